@@ -1,0 +1,1 @@
+//! A generic evolutionary optimizer: Problem, Individual, Mutation, Selection, and the algorithms composed of them.

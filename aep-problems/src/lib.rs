@@ -1,0 +1,1 @@
+//! Test functions for optimizers, with domain, optimum and reference.

@@ -1,0 +1,1 @@
+//! The report page: a self-contained HTML document of a discovery.
