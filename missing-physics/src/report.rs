@@ -1,0 +1,161 @@
+//! What a discovery found, as data: the JSON contract that scripts rely on.
+//!
+//! Adding a field is fine, renaming one is not. Keys of the maps (`force_rms_N`, `window_rms_m`, ...)
+//! are named by the model family.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// What the data say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// One or more effects were found and added.
+    EffectsFound,
+    /// The base model explains the data down to what noise does.
+    NothingMissing,
+    /// Structure remains that no candidate explains.
+    Unexplained,
+    /// Several candidates explain it equally well on this data.
+    Ambiguous,
+}
+
+/// A parameter with its interval.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Best value.
+    pub value: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end of the 95 % interval.
+    pub high: f64,
+    /// SI unit.
+    pub unit: String,
+    /// False where the data do not determine the value.
+    pub identifiable: bool,
+}
+
+/// An error on the blocks that were fitted and on those held out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SplitError {
+    /// On the blocks used for fitting.
+    pub fit: f64,
+    /// On the held-out blocks.
+    pub validation: f64,
+}
+
+/// One rung of the ladder: a structure, its parameters, its errors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rung {
+    /// The effect added on this rung (several, joined with `+`, where they only help together);
+    /// nothing on the base rung.
+    pub added: Option<String>,
+    /// Every effect of the model on this rung.
+    pub effects: Vec<String>,
+    /// `effect.parameter` -> estimate.
+    pub parameters: BTreeMap<String, Estimate>,
+    /// Name of the error -> its size on fitted and held-out data.
+    pub error: BTreeMap<String, SplitError>,
+    /// Chance that a term with no part in the data gains as much; nothing on the base rung.
+    pub p_value: Option<f64>,
+}
+
+/// How well a candidate would explain what the model of a rung leaves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// Name of the effect.
+    pub effect: String,
+    /// Share of the held-out squared error that it removes, 0..1 (negative: it makes it worse).
+    pub gain: f64,
+    /// Chance of as large a gain by any effect of the library where none is missing.
+    pub p_value: f64,
+    /// Size with unit, in words: "8.2 N at 1.1 mm/s".
+    #[serde(default)]
+    pub size: String,
+}
+
+/// Where the model fails: one regime or coordinate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Where {
+    /// The coordinate or regime.
+    pub coordinate: String,
+    /// Share of the squared error, 0..1.
+    pub share: f64,
+    /// Chance of as strong a dependence on the coordinate where there is none.
+    pub p_value: f64,
+    /// In words.
+    pub note: String,
+}
+
+/// Effects that this data cannot tell apart.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ambiguity {
+    /// Names of the effects.
+    pub effects: Vec<String>,
+    /// The experiment that would tell them apart.
+    pub experiment: String,
+}
+
+/// A curve or a cloud of the report page.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plot {
+    /// What it shows.
+    pub title: String,
+    /// Label of the abscissa, with unit.
+    pub x_label: String,
+    /// Label of the ordinate, with unit.
+    pub y_label: String,
+    /// The curves, all on the same axes.
+    pub curves: Vec<Curve>,
+}
+
+/// One curve of a [`Plot`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Name in the legend.
+    pub label: String,
+    /// Abscissa.
+    pub x: Vec<f64>,
+    /// Ordinate, as long as `x`.
+    pub y: Vec<f64>,
+}
+
+/// The whole result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Discovery {
+    /// What the data say.
+    pub verdict: Verdict,
+    /// The verdict in one or two sentences.
+    #[serde(default)]
+    pub summary: String,
+    /// Effects in the order added.
+    pub added: Vec<String>,
+    /// From the base model up.
+    pub ladder: Vec<Rung>,
+    /// One list per rung, best first.
+    pub ranking: Vec<Vec<Candidate>>,
+    /// Where the last model fails (the base model's is in `where_base`).
+    #[serde(rename = "where")]
+    pub where_it_fails: Vec<Where>,
+    /// Where the base model fails.
+    #[serde(default)]
+    pub where_base: Vec<Where>,
+    /// Effects that this data cannot tell apart.
+    pub ambiguous: Vec<Ambiguity>,
+    /// Size of the error that no model can remove, by quantity.
+    pub noise_floor: BTreeMap<String, f64>,
+    /// Size of each effect that would have been seen, in words, by effect.
+    #[serde(default)]
+    pub detection_limits: BTreeMap<String, String>,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Time taken, s.
+    pub wall_s: f64,
+    /// Things the user should know: doubts about the data, limits of the verdict.
+    #[serde(default)]
+    pub notes: Vec<String>,
+    /// Curves for the page; not part of the JSON contract.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plots: Vec<Plot>,
+}
