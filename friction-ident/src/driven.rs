@@ -247,7 +247,9 @@ impl<'a> Walk<'a> {
         let mut level = self.sum(terms, Slot::FrictionLevel, |effect, p, m, level| {
             effect.friction_level(p, m, level);
         });
-        level.iter_mut().for_each(|level| *level = level.max(0.0));
+        for level in &mut level {
+            *level = level.max(0.0);
+        }
         level
     }
 

@@ -99,7 +99,7 @@ impl Term {
 
 impl std::fmt::Debug for Term {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct(self.name()).field("values", &self.values).finish()
+        f.debug_tuple(self.name()).field(&self.values).finish()
     }
 }
 

@@ -81,8 +81,8 @@ fn a_lag_asks_for_a_command_ahead_of_the_force() {
     let (force, command) =
         (force_along(&base, &sine.motion()), force_along(&lagged, &sine.motion()));
     let ahead = |k: usize| force[k] + 2e-3 * (force[k + 1] - force[k - 1]) / 2e-3;
-    for k in 1..1999 {
-        assert!((command[k] - ahead(k)).abs() < 1e-9);
+    for (k, command) in command.iter().enumerate().take(1999).skip(1) {
+        assert!((command - ahead(k)).abs() < 1e-9);
     }
 }
 
@@ -112,5 +112,5 @@ fn channels_that_do_not_fit_are_named() {
     let error = MeasuredMotion::new(&[0.0, 1.0], &[0.0, 0.0], &[0.0], &[0.0, 0.0]).unwrap_err();
     assert_eq!(error, MotionError::Length { channel: "velocity", values: 1, samples: 2 });
     let sine = Sine::new(0.1, 0.5, 20);
-    assert!(sine.motion().with_segments(&[0..21]).is_err());
+    assert!(sine.motion().with_segments(&[0..10, 10..21]).is_err());
 }

@@ -4,7 +4,7 @@ use super::{ALL, Effect};
 
 /// A name that no effect has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown effect '{name}'{}\nknown effects: {}", nearest(.hint), .known.join(", "))]
+#[error("unknown effect '{name}'{}\nknown effects: {}", nearest(.hint.as_deref()), .known.join(", "))]
 pub struct UnknownEffect {
     /// The name asked for.
     pub name: String,
@@ -14,8 +14,8 @@ pub struct UnknownEffect {
     pub known: Vec<String>,
 }
 
-fn nearest(hint: &Option<String>) -> String {
-    hint.as_ref().map(|name| format!("; did you mean '{name}'?")).unwrap_or_default()
+fn nearest(hint: Option<&str>) -> String {
+    hint.map(|name| format!("; did you mean '{name}'?")).unwrap_or_default()
 }
 
 /// Similarity (0..1) from which a name is offered as the one that was meant.
