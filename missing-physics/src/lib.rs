@@ -5,6 +5,8 @@
 //! on held-out data. The engine knows nothing of friction or any other subject: it works for every
 //! [`ModelFamily`](family::ModelFamily).
 
+pub mod data_check;
+pub mod quantity;
 pub mod recording;
 pub mod report;
 
