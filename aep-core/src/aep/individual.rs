@@ -1,0 +1,59 @@
+//! Rule 1: what an AEP individual remembers.
+
+use serde::{Deserialize, Serialize};
+
+use crate::random::{Stream, index};
+use crate::{Individual, Scalar};
+
+/// Search direction per component and age.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AepIndividual {
+    directions: Vec<i8>,
+    age: u32,
+}
+
+impl AepIndividual {
+    /// Random directions, age 1.
+    pub fn random(dimension: usize, rng: &mut Stream) -> Self {
+        let directions = (0..dimension).map(|_| if index(rng, 2) == 0 { -1 } else { 1 }).collect();
+        Self { directions, age: 1 }
+    }
+
+    /// -1 or +1 per component.
+    #[inline]
+    pub fn directions(&self) -> &[i8] {
+        &self.directions
+    }
+
+    /// Generations since the last success, plus one.
+    #[inline]
+    pub fn age(&self) -> u32 {
+        self.age
+    }
+
+    /// Takes over what `other` carries, without allocating.
+    #[inline]
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        self.directions.copy_from_slice(&other.directions);
+        self.age = other.age;
+    }
+}
+
+impl<T: Scalar> Individual<T> for AepIndividual {
+    /// d = sgn(child - parent), age = 1. A component that did not move (the border held it) keeps
+    /// its direction: the paper's d is -1 or +1, never 0.
+    fn won(&mut self, parent: &[T], child: &[T]) {
+        for ((direction, parent), child) in self.directions.iter_mut().zip(parent).zip(child) {
+            if child > parent {
+                *direction = 1;
+            } else if child < parent {
+                *direction = -1;
+            }
+        }
+        self.age = 1;
+    }
+
+    fn survived(&mut self) {
+        self.age = self.age.saturating_add(1);
+    }
+}

@@ -1,0 +1,166 @@
+//! Accelerated evolutionary programming.
+
+mod individual;
+mod mutation;
+mod step;
+
+use serde::{Deserialize, Serialize};
+
+pub use individual::AepIndividual;
+pub use mutation::AepMutation;
+pub use step::{AgeLimit, Division, Spread, StepScale, StepUnit};
+
+use crate::{Algorithm, Border, ConfigError, Engine, Method, OneToOne, Scalar, Start};
+
+/// Accelerated evolutionary programming (AEP): direction memory, age, one-to-one competition.
+///
+/// Individual i is a position z, a direction `d_j` in {-1, +1} per component and an age. It starts
+/// with z uniform in the domain, d random and age 1.
+///
+/// - **Rule 1.** If the child beat its parent: `d_j` = sgn(`child_j` - `parent_j`), age = 1.
+///   Otherwise age grows by 1.
+/// - **Rule 2.** With age = 1: `child_j` = `z_j` + `d_j` |N(0, s)|, s = beta1 f(z).
+///   With age > 1: `child_j` = `z_j` + N(0, s), s = beta2 f(z) age.
+/// - Each parent has one child; the better of the two stays.
+///
+/// | setting | paper | meaning |
+/// |---|---|---|
+/// | population | 40 | individuals |
+/// | `beta1` | 5 | step factor after a success |
+/// | `beta2` | 0.05 | step factor after failures, times age |
+/// | [`Spread`], [`Division`], [`Border`] | not said | readings of the paper's text |
+/// | [`StepScale`], [`StepUnit`], [`AgeLimit`] | cost, absolute, unlimited | variants for real tasks |
+///
+/// **Limits.** By the paper's rules the step is proportional to the cost (or its root): the method
+/// converges only where the smallest cost is 0, its steps have the same length in every component,
+/// and it knows no correlation between components. [`Aep::practical`] removes the first two.
+///
+/// Reference: J.-H. Kim, H.-K. Chae, J.-Y. Jeon, S.-W. Lee, "Identification and Control of Systems
+/// with Friction Using Accelerated Evolutionary Programming", IEEE Control Systems Magazine, 1996.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Aep {
+    /// Number of individuals.
+    pub population: usize,
+    /// Step factor at age 1.
+    pub beta1: f64,
+    /// Step factor at higher ages.
+    pub beta2: f64,
+    /// What s is in N(0, s).
+    pub spread: Spread,
+    /// Whether s is divided by the number of components.
+    pub division: Division,
+    /// What happens outside the domain.
+    pub border: Border,
+    /// What takes the place of the cost in s.
+    pub step_scale: StepScale,
+    /// What one component's step is measured in.
+    pub step_unit: StepUnit,
+    /// What happens at high age.
+    pub age_limit: AgeLimit,
+}
+
+impl Aep {
+    /// The paper's rules and settings, in the reading that comes closest to its printed results.
+    pub fn paper() -> Self {
+        Self {
+            population: 40,
+            beta1: 5.0,
+            beta2: 0.05,
+            spread: Spread::Variance,
+            division: Division::PerComponent,
+            border: Border::KeepComponent,
+            step_scale: StepScale::Cost,
+            step_unit: StepUnit::Absolute,
+            age_limit: AgeLimit::Unlimited,
+        }
+    }
+
+    /// Settings for real tasks: a smallest cost that is not 0, parameters of different magnitude.
+    pub fn practical() -> Self {
+        Self {
+            beta1: 0.5,
+            beta2: 0.1,
+            spread: Spread::StandardDeviation,
+            division: Division::Whole,
+            border: Border::Reflect,
+            step_scale: StepScale::Relative { floor: 0.1 },
+            step_unit: StepUnit::Population,
+            age_limit: AgeLimit::Adopt(10),
+            ..Self::paper()
+        }
+    }
+
+    /// The same with another population size.
+    #[must_use]
+    pub fn with_population(self, population: usize) -> Self {
+        Self { population, ..self }
+    }
+
+    /// The same with other step factors.
+    #[must_use]
+    pub fn with_beta(self, beta1: f64, beta2: f64) -> Self {
+        Self { beta1, beta2, ..self }
+    }
+
+    /// The same with another reading of N(0, s).
+    #[must_use]
+    pub fn with_spread(self, spread: Spread, division: Division) -> Self {
+        Self { spread, division, ..self }
+    }
+
+    /// The same with another border.
+    #[must_use]
+    pub fn with_border(self, border: Border) -> Self {
+        Self { border, ..self }
+    }
+
+    /// The same with another step scale and unit.
+    #[must_use]
+    pub fn with_steps(self, step_scale: StepScale, step_unit: StepUnit) -> Self {
+        Self { step_scale, step_unit, ..self }
+    }
+
+    /// The same with another age limit.
+    #[must_use]
+    pub fn with_age_limit(self, age_limit: AgeLimit) -> Self {
+        Self { age_limit, ..self }
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        let hint = "must be positive and finite";
+        for (setting, value) in [("beta1", self.beta1), ("beta2", self.beta2)] {
+            let valid = value > 0.0 && value.is_finite();
+            ConfigError::require(valid, "aep", setting, value, hint)?;
+        }
+        match self.step_scale {
+            StepScale::Cost => Ok(()),
+            StepScale::AboveReference(value) => {
+                ConfigError::require(value.is_finite(), "aep", "reference", value, "must be finite")
+            }
+            StepScale::Relative { floor } => {
+                let valid = floor >= 0.0 && floor.is_finite();
+                ConfigError::require(valid, "aep", "floor", floor, "must be 0 or positive")
+            }
+        }
+    }
+
+    /// A fresh run, as the engine itself: gives access to the population.
+    pub fn engine<T: Scalar>(
+        &self,
+        start: &Start<'_, T>,
+    ) -> Result<Engine<T, AepMutation<T>, OneToOne>, ConfigError> {
+        self.check()?;
+        let mutation = AepMutation::new(self.clone());
+        Ok(Engine::new("aep", start, self.population, mutation, OneToOne)?.with_configuration(self))
+    }
+}
+
+impl<T: Scalar> Method<T> for Aep {
+    fn name(&self) -> String {
+        if *self == Self::practical() { "aep-practical".into() } else { "aep".into() }
+    }
+
+    fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
+        Ok(Box::new(self.engine(start)?))
+    }
+}

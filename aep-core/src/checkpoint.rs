@@ -1,0 +1,170 @@
+//! Runs on disk: what a checkpoint holds and how it is kept from being mistaken.
+//!
+//! Layout: 8 bytes magic, 4 bytes version, 8 bytes length of the contents (little endian), the
+//! contents (postcard), 4 bytes CRC-32 of everything before. A file is written beside its place and
+//! renamed into it, so that a run killed at any moment leaves the last whole checkpoint.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+const MAGIC: &[u8; 8] = b"AEP-CKPT";
+const VERSION: u32 = 1;
+const HEADER: usize = 20;
+
+/// Why a checkpoint could not be written or is refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckpointError {
+    /// The file could not be read or written.
+    #[error("{path}: {source}")]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is something else.
+    #[error("{path}: not a checkpoint\n  give the file that the run wrote")]
+    Foreign {
+        /// Which file.
+        path: PathBuf,
+    },
+    /// The file was written by another version.
+    #[error("{path}: checkpoint of version {found}, this program reads version {VERSION}")]
+    Version {
+        /// Which file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+    },
+    /// The file is cut off or damaged.
+    #[error("{path}: truncated or damaged ({what})\n  use an earlier copy or start the run again")]
+    Damaged {
+        /// Which file.
+        path: PathBuf,
+        /// What was found.
+        what: &'static str,
+    },
+    /// The checkpoint belongs to another configuration.
+    #[error(
+        "the checkpoint belongs to another run\n  checkpoint: {checkpoint}\n  this run:   {run}\n  \
+         resume with the configuration and the seed it was started with"
+    )]
+    OtherRun {
+        /// Configuration in the checkpoint.
+        checkpoint: String,
+        /// Configuration of this run.
+        run: String,
+    },
+    /// The state does not fit the algorithm.
+    #[error("the checkpoint does not fit this run: {what} differs")]
+    Mismatch {
+        /// What differs.
+        what: &'static str,
+    },
+    /// The state could not be encoded or decoded.
+    #[error("the state of the run cannot be encoded or decoded: {0}")]
+    Encoding(#[from] postcard::Error),
+}
+
+/// Bytes of `state`, exact to the bit.
+pub fn encode<S: Serialize>(state: &S) -> Result<Vec<u8>, CheckpointError> {
+    Ok(postcard::to_allocvec(state)?)
+}
+
+/// The state encoded in `bytes`.
+pub fn decode<S: DeserializeOwned>(bytes: &[u8]) -> Result<S, CheckpointError> {
+    Ok(postcard::from_bytes(bytes)?)
+}
+
+/// Writes `contents` to `path` so that the file is always whole: the old one or the new one.
+pub fn write<C: Serialize>(path: &Path, contents: &C) -> Result<(), CheckpointError> {
+    let bytes = frame(&encode(contents)?);
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".new");
+    let beside = PathBuf::from(beside);
+    let written = write_synced(&beside, &bytes).and_then(|()| fs::rename(&beside, path));
+    written.map_err(|source| CheckpointError::File { path: path.into(), source })
+}
+
+fn write_synced(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+fn frame(payload: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(payload.len() + HEADER + 4);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&VERSION.to_le_bytes());
+    bytes.extend_from_slice(&(payload.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(payload);
+    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
+    bytes
+}
+
+/// Reads what [`write()`] wrote; everything else is refused.
+pub fn read<C: DeserializeOwned>(path: &Path) -> Result<C, CheckpointError> {
+    let bytes =
+        fs::read(path).map_err(|source| CheckpointError::File { path: path.into(), source })?;
+    decode(payload(path, &bytes)?)
+}
+
+fn payload<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a [u8], CheckpointError> {
+    let path = || path.to_path_buf();
+    if bytes.len() < MAGIC.len() || !bytes.starts_with(MAGIC) {
+        return Err(CheckpointError::Foreign { path: path() });
+    }
+    let damaged = |what| CheckpointError::Damaged { path: path(), what };
+    let found = u32::from_le_bytes(array(bytes, 8).ok_or_else(|| damaged("no version"))?);
+    if found != VERSION {
+        return Err(CheckpointError::Version { path: path(), found });
+    }
+    let length = u64::from_le_bytes(array(bytes, 12).ok_or_else(|| damaged("no length"))?);
+    if bytes.len() as u64 != length.saturating_add(HEADER as u64 + 4) {
+        return Err(damaged("wrong length"));
+    }
+    let (content, checksum) = bytes.split_at(bytes.len() - 4);
+    if crc32fast::hash(content).to_le_bytes() != *checksum {
+        return Err(damaged("wrong checksum"));
+    }
+    Ok(&content[HEADER..])
+}
+
+fn array<const N: usize>(bytes: &[u8], from: usize) -> Option<[u8; N]> {
+    bytes.get(from..from + N)?.try_into().ok()
+}
+
+/// The contents of a run's checkpoint.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct RunState {
+    /// Configuration, seed and domain of the run.
+    pub signature: String,
+    /// State of the algorithm.
+    pub algorithm: Vec<u8>,
+    /// State of the driver.
+    pub ledger: Vec<u8>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_truncation_and_every_flipped_byte_is_refused() {
+        let path = Path::new("run.ckpt");
+        let bytes = frame(&encode(&(1u64, f64::INFINITY, "text")).unwrap());
+        assert!(payload(path, &bytes).is_ok());
+        for length in 0..bytes.len() {
+            assert!(payload(path, &bytes[..length]).is_err(), "cut to {length}");
+        }
+        for i in 0..bytes.len() {
+            let mut damaged = bytes.clone();
+            damaged[i] ^= 0x10;
+            assert!(payload(path, &damaged).is_err(), "byte {i}");
+        }
+    }
+}

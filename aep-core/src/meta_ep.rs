@@ -1,0 +1,213 @@
+//! Meta evolutionary programming with log-normal self-adaptation.
+
+use serde::{Deserialize, Serialize};
+
+use crate::random::{self, Stream};
+use crate::{
+    Algorithm, Border, Child, ConfigError, Domain, Engine, Individual, Method, Mutation,
+    Population, Scalar, Start, StepUnit, Tournament,
+};
+
+/// Which of position and step size is mutated first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum UpdateOrder {
+    /// The parent's step size moves the position, then mutates (habit of evolutionary programming).
+    PositionFirst,
+    /// The step size mutates, the new one moves the position (habit of evolution strategies).
+    SigmaFirst,
+}
+
+/// What counts as n in the learning rates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LearningRate {
+    /// The number of components.
+    Dimension,
+    /// The population size, as the paper prints for f5.
+    Population,
+}
+
+/// Evolutionary programming with log-normal step sizes ("meta-EP", the paper's `MetaLN EP`),
+/// its yardstick.
+///
+/// Individual: position z and one step size `sigma_j` per component. With one N common to all
+/// components and one `N_j` each,
+///
+/// `z'_j` = `z_j` + `sigma_j` `N_j`(0, 1),
+/// `sigma'_j` = `sigma_j` exp(tau' N(0, 1) + tau `N_j`(0, 1)),
+/// tau = 1 / sqrt(2 sqrt n), tau' = 1 / sqrt(2 n).
+///
+/// Each parent has one child; a [`Tournament`] over parents and children selects.
+///
+/// | setting | paper | meaning |
+/// |---|---|---|
+/// | population | 40 | individuals |
+/// | `sigma` | 2.5 (f4: 0.25; f5: also 30) | step size at the start |
+/// | `tournament.opponents` | 10 | encounters of each candidate |
+/// | [`UpdateOrder`], [`Border`], ties | not said | readings of the paper's text |
+///
+/// **Limits.** Step sizes can shrink faster than the distance to the optimum and then stall; the
+/// start value matters (the paper's f5). [`StepUnit::Domain`] makes it relative to the domain.
+///
+/// Reference: N. Saravanan, D. B. Fogel, "Learning Strategy Parameters in Evolutionary Programming:
+/// An Empirical Study", Proc. 3rd Annual Conference on Evolutionary Programming, 1994.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MetaEp {
+    /// Number of individuals.
+    pub population: usize,
+    /// Step size at the start, in units of `unit`.
+    pub sigma: f64,
+    /// What the step size is measured in; [`StepUnit::Population`] is not meaningful here.
+    pub unit: StepUnit,
+    /// Which is mutated first.
+    pub order: UpdateOrder,
+    /// What counts as n in tau and tau'.
+    pub learning_rate: LearningRate,
+    /// What happens outside the domain.
+    pub border: Border,
+    /// Who survives.
+    pub opponents: usize,
+    /// Order of candidates with equally many wins.
+    pub ties: crate::Ties,
+}
+
+impl MetaEp {
+    /// The paper's settings, in the reading that comes closest to its printed results.
+    pub fn paper() -> Self {
+        Self {
+            population: 40,
+            sigma: 2.5,
+            unit: StepUnit::Absolute,
+            order: UpdateOrder::PositionFirst,
+            learning_rate: LearningRate::Dimension,
+            border: Border::KeepComponent,
+            opponents: 10,
+            ties: crate::Ties::Cost,
+        }
+    }
+
+    /// Settings for real tasks: the first steps are a fifth of the domain in every component.
+    pub fn practical() -> Self {
+        Self { sigma: 0.2, unit: StepUnit::Domain, border: Border::Reflect, ..Self::paper() }
+    }
+
+    /// The same with another population size.
+    #[must_use]
+    pub fn with_population(self, population: usize) -> Self {
+        Self { population, ..self }
+    }
+
+    /// The same with another step size at the start.
+    #[must_use]
+    pub fn with_sigma(self, sigma: f64) -> Self {
+        Self { sigma, ..self }
+    }
+
+    /// The same with another order of the two mutations.
+    #[must_use]
+    pub fn with_order(self, order: UpdateOrder) -> Self {
+        Self { order, ..self }
+    }
+
+    /// The same with another border.
+    #[must_use]
+    pub fn with_border(self, border: Border) -> Self {
+        Self { border, ..self }
+    }
+
+    /// The same with another n in the learning rates.
+    #[must_use]
+    pub fn with_learning_rate(self, learning_rate: LearningRate) -> Self {
+        Self { learning_rate, ..self }
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        let valid = self.sigma > 0.0 && self.sigma.is_finite();
+        let hint = "must be positive and finite";
+        ConfigError::require(valid, "meta-ep", "sigma", self.sigma, hint)?;
+        let hint = "use absolute steps or steps in units of the domain";
+        ConfigError::require(self.unit != StepUnit::Population, "meta-ep", "unit", f64::NAN, hint)
+    }
+}
+
+impl<T: Scalar> Method<T> for MetaEp {
+    fn name(&self) -> String {
+        if *self == Self::practical() { "meta-ep-practical".into() } else { "meta-ep".into() }
+    }
+
+    fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
+        self.check()?;
+        let selection = Tournament { opponents: self.opponents, ties: self.ties };
+        let mutation = MetaEpMutation::new(self.clone(), start.domain.dimension());
+        let engine = Engine::new("meta-ep", start, self.population, mutation, selection)?;
+        Ok(Box::new(engine.with_configuration(self)))
+    }
+}
+
+/// Step sizes, one per component, in search coordinates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct StepSizes<T: Scalar>(pub Vec<T>);
+
+impl<T: Scalar> Individual<T> for StepSizes<T> {}
+
+/// The mutation of [`MetaEp`].
+#[derive(Clone, Debug)]
+pub struct MetaEpMutation<T> {
+    config: MetaEp,
+    /// Of one component's own number.
+    tau: T,
+    /// Of the number common to all components.
+    tau_common: T,
+}
+
+impl<T: Scalar> MetaEpMutation<T> {
+    /// The mutation that `config` describes, for `dimension` components.
+    pub fn new(config: MetaEp, dimension: usize) -> Self {
+        let n = match config.learning_rate {
+            LearningRate::Dimension => dimension as f64,
+            LearningRate::Population => config.population as f64,
+        };
+        let (tau, tau_common) = ((2.0 * n.sqrt()).sqrt().recip(), (2.0 * n).sqrt().recip());
+        Self { config, tau: T::of(tau), tau_common: T::of(tau_common) }
+    }
+}
+
+impl<T: Scalar> Mutation<T> for MetaEpMutation<T> {
+    type Individual = StepSizes<T>;
+
+    fn individual(&self, domain: &Domain<T>, _: &mut Stream) -> StepSizes<T> {
+        let limits = domain.search_lower().iter().zip(domain.search_upper());
+        let unit = |(lo, hi): (&T, &T)| match self.config.unit {
+            StepUnit::Domain => *hi - *lo,
+            _ => T::one(),
+        };
+        StepSizes(limits.map(|limits| unit(limits) * T::of(self.config.sigma)).collect())
+    }
+
+    fn mutate(
+        &self,
+        parent: usize,
+        population: &Population<T, StepSizes<T>>,
+        domain: &Domain<T>,
+        rng: &mut Stream,
+        child: Child<'_, T, StepSizes<T>>,
+    ) {
+        let base = population.positions.row(parent);
+        let sigma = &population.individuals[parent].0;
+        let common = self.tau_common * random::normal::<T>(rng);
+        for j in 0..base.len() {
+            let limits = (domain.search_lower()[j], domain.search_upper()[j]);
+            let mutated = sigma[j] * (common + self.tau * random::normal::<T>(rng)).exp();
+            let moving = match self.config.order {
+                UpdateOrder::PositionFirst => sigma[j],
+                UpdateOrder::SigmaFirst => mutated,
+            };
+            let mut propose = || base[j] + moving * random::normal::<T>(rng);
+            let proposal = propose();
+            child.position[j] = self.config.border.settle(proposal, base[j], limits, propose);
+            child.individual.0[j] = mutated;
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The task: a domain and a cost to be minimised.
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::{Batch, Domain, Scalar};
+
+/// A task: find the position in [`Problem::domain`] with the smallest cost.
+///
+/// A user's own problem is one `impl` of two methods, or a closure in [`FnProblem`]. A cost that is
+/// not finite counts as the worst one possible and is reported; a panic is caught and counted.
+///
+/// ```
+/// use aep_core::{Domain, Problem};
+///
+/// struct Valley {
+///     domain: Domain,
+/// }
+///
+/// impl Problem for Valley {
+///     fn domain(&self) -> &Domain {
+///         &self.domain
+///     }
+///     fn evaluate(&self, x: &[f64]) -> f64 {
+///         100.0 * (x[0] * x[0] - x[1]).powi(2) + (1.0 - x[0]).powi(2)
+///     }
+/// }
+/// ```
+pub trait Problem<T: Scalar = f64>: Sync {
+    /// Where the problem is defined.
+    fn domain(&self) -> &Domain<T>;
+
+    /// The cost of one position (problem coordinates).
+    fn evaluate(&self, x: &[T]) -> T;
+
+    /// The costs of many positions: `costs[i]` belongs to `points.row(i)`.
+    ///
+    /// Override it where a whole generation can be evaluated faster than one position after the
+    /// other (SIMD lanes, a lockstep simulator, a GPU). A cost must not depend on which other
+    /// positions are in the batch: evaluators cut a generation as they like.
+    fn evaluate_batch(&self, points: Batch<'_, T>, costs: &mut [T]) {
+        for (x, cost) in points.rows().zip(costs) {
+            *cost = self.evaluate(x);
+        }
+    }
+
+    /// How many positions [`Problem::evaluate_batch`] likes to get at once: parallel evaluators
+    /// cut a generation into pieces of this size. 1 for a problem without batch evaluation.
+    fn batch_size(&self) -> usize {
+        1
+    }
+
+    /// Evaluations that ended in an error so far, for problems that can fail.
+    fn errors(&self) -> Errors {
+        Errors::default()
+    }
+}
+
+/// How many evaluations ended in an error, and what the first one said.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Errors {
+    /// Number of errors.
+    pub count: u64,
+    /// Message of the first one.
+    pub first: Option<String>,
+}
+
+/// A closure as a problem.
+///
+/// ```
+/// use aep_core::{Domain, FnProblem};
+/// let sphere = FnProblem::new(Domain::cube(3, -6.0, 6.0)?, |x: &[f64]| x.iter().map(|v| v * v).sum());
+/// # Ok::<(), aep_core::ConfigError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FnProblem<F, T: Scalar = f64> {
+    domain: Domain<T>,
+    cost: F,
+}
+
+impl<T: Scalar, F: Fn(&[T]) -> T + Sync> FnProblem<F, T> {
+    /// The problem of minimising `cost` in `domain`.
+    pub fn new(domain: Domain<T>, cost: F) -> Self {
+        Self { domain, cost }
+    }
+}
+
+impl<T: Scalar, F: Fn(&[T]) -> T + Sync> Problem<T> for FnProblem<F, T> {
+    fn domain(&self) -> &Domain<T> {
+        &self.domain
+    }
+
+    fn evaluate(&self, x: &[T]) -> T {
+        (self.cost)(x)
+    }
+}
+
+/// A closure that can fail as a problem: an error is the worst cost, counted, its first message
+/// kept for the report.
+#[derive(Debug)]
+pub struct FallibleProblem<F, T: Scalar = f64> {
+    domain: Domain<T>,
+    cost: F,
+    errors: Mutex<Errors>,
+}
+
+impl<T: Scalar, E: std::fmt::Display, F: Fn(&[T]) -> Result<T, E> + Sync> FallibleProblem<F, T> {
+    /// The problem of minimising `cost` in `domain`.
+    pub fn new(domain: Domain<T>, cost: F) -> Self {
+        Self { domain, cost, errors: Mutex::default() }
+    }
+}
+
+impl<T: Scalar, E: std::fmt::Display, F: Fn(&[T]) -> Result<T, E> + Sync> Problem<T>
+    for FallibleProblem<F, T>
+{
+    fn domain(&self) -> &Domain<T> {
+        &self.domain
+    }
+
+    fn evaluate(&self, x: &[T]) -> T {
+        (self.cost)(x).unwrap_or_else(|error| {
+            let mut errors = self.errors.lock().unwrap_or_else(PoisonError::into_inner);
+            errors.count += 1;
+            errors.first.get_or_insert_with(|| error.to_string());
+            T::nan()
+        })
+    }
+
+    fn errors(&self) -> Errors {
+        self.errors.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}

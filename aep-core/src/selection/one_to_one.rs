@@ -1,0 +1,27 @@
+//! Competition of each child with its own parent.
+
+use crate::random::Streams;
+use crate::{Individual, Population, Scalar, Selection};
+
+/// A child replaces its parent if its cost is strictly smaller (the paper's step 5).
+///
+/// Nobody else is displaced, so the population keeps its diversity, and the best cost can never
+/// get worse. The paper then sorts the population. No rule of AEP depends on the order, so
+/// individuals stay in their slots here; [`Population::ranking`] gives the order when somebody
+/// asks for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OneToOne;
+
+impl<T: Scalar, I: Individual<T>> Selection<T, I> for OneToOne {
+    fn select(&self, parents: &mut Population<T, I>, children: &mut Population<T, I>, _: Streams) {
+        for i in 0..parents.len() {
+            if children.costs[i] < parents.costs[i] {
+                let (from, to) = (parents.positions.row(i), children.positions.row(i));
+                children.individuals[i].won(from, to);
+                parents.swap_with(i, children, i);
+            } else {
+                parents.individuals[i].survived();
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! What a run promises: reproducible to the bit, resumable, tolerant of failing problems.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use aep_core::{
+    Aep, Algorithm, Budget, CheckpointError, Domain, Driver, FallibleProblem, FnProblem, MetaEp,
+    Method, Outcome, Parallel, Problem, Progress, RunError, Scale, Start, StopReason, minimize,
+};
+
+fn rosenbrock() -> impl Problem {
+    let domain = Domain::cube(2, -6.0, 6.0).unwrap();
+    FnProblem::new(domain, |x: &[f64]| 100.0 * (x[0] * x[0] - x[1]).powi(2) + (1.0 - x[0]).powi(2))
+}
+
+fn methods() -> Vec<Box<dyn Method>> {
+    vec![
+        Box::new(Aep::paper()),
+        Box::new(Aep::practical()),
+        Box::new(MetaEp::paper()),
+        Box::new(MetaEp::practical()),
+    ]
+}
+
+fn start(method: &dyn Method, problem: &dyn Problem) -> Box<dyn Algorithm> {
+    method.start(&Start::new(problem.domain(), 11)).unwrap()
+}
+
+fn without_time(mut outcome: Outcome) -> Outcome {
+    outcome.elapsed = std::time::Duration::ZERO;
+    outcome
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let problem = rosenbrock();
+    for method in methods() {
+        let run = |threads| {
+            let mut driver = Driver::new(Budget::generations(150));
+            if threads > 0 {
+                driver = driver.with_evaluator(Parallel::with_threads(threads).unwrap());
+            }
+            without_time(driver.run(&mut *start(&*method, &problem), &problem).unwrap())
+        };
+        let serial = run(0);
+        for threads in [1, 2, 5] {
+            assert_eq!(run(threads), serial, "{} with {threads} threads", method.name());
+        }
+    }
+}
+
+#[test]
+fn a_resumed_run_equals_the_uninterrupted_one() {
+    let problem = rosenbrock();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.ckpt");
+    for method in methods() {
+        let whole = Driver::new(Budget::generations(120))
+            .run(&mut *start(&*method, &problem), &problem)
+            .unwrap();
+        let flag = AtomicBool::new(false);
+        let first = Driver::new(Budget::generations(120))
+            .with_stop_flag(&flag)
+            .with_checkpoint(&path, 7)
+            .with_observer(|p: &Progress| flag.store(p.generation >= 50, Ordering::Relaxed))
+            .run(&mut *start(&*method, &problem), &problem)
+            .unwrap();
+        assert_eq!((first.stop, first.generations), (StopReason::Interrupted, 50));
+        let resumed = Driver::new(Budget::generations(120))
+            .resume(&mut *start(&*method, &problem), &problem, &path)
+            .unwrap();
+        assert_eq!(without_time(resumed), without_time(whole), "{}", method.name());
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused() {
+    let problem = rosenbrock();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.ckpt");
+    let mut driver = Driver::new(Budget::generations(3)).with_checkpoint(&path, 1);
+    driver.run(&mut *start(&Aep::paper(), &problem), &problem).unwrap();
+    let other = Aep::paper().with_beta(30.0, 0.3);
+    let error = driver.resume(&mut *start(&other, &problem), &problem, &path).unwrap_err();
+    assert!(matches!(error, RunError::Checkpoint(CheckpointError::OtherRun { .. })), "{error}");
+    std::fs::write(&path, b"z1,z2\n1,2\n").unwrap();
+    let error = driver.resume(&mut *start(&other, &problem), &problem, &path).unwrap_err();
+    assert!(error.to_string().contains("not a checkpoint"), "{error}");
+}
+
+/// NaN on half of the domain, an error in a corner, a panic in another.
+fn hostile() -> impl Problem {
+    let domain = Domain::cube(3, -6.0, 6.0).unwrap();
+    FallibleProblem::new(domain, |x: &[f64]| {
+        assert!(!(x[1] > 4.0 && x[2] > 0.0), "the simulator fell over");
+        if x[1] < -4.0 {
+            return Err("no solution for this load");
+        }
+        let sphere: f64 = x.iter().map(|v| v * v).sum();
+        Ok(if x[0] > 0.0 { f64::NAN } else { sphere })
+    })
+}
+
+#[test]
+fn a_problem_that_fails_in_every_way_is_still_solved_in_25_of_25_seeds() {
+    let problem = hostile();
+    aep_core::silence_caught_panics();
+    for method in methods() {
+        // Meta-EP's step sizes can collapse on any problem; it must run on, AEP must arrive.
+        let target = if method.name().starts_with("meta-ep") { 1e-2 } else { 1e-6 };
+        for seed in 0..25 {
+            let budget = Budget::evaluations(40_000).with_target(target);
+            let outcome = minimize(&problem, &*method, budget, seed).unwrap();
+            assert_eq!(outcome.stop, StopReason::Target, "{} {seed}: {outcome:?}", method.name());
+            let failures = outcome.failures;
+            assert!(failures.non_finite > 0 && failures.errors > 0 && failures.panics > 0);
+        }
+    }
+}
+
+#[test]
+fn a_problem_that_always_fails_ends_with_nothing_found() {
+    let domain = Domain::cube(2, 0.0, 1.0).unwrap();
+    let problem = FnProblem::new(domain, |_: &[f64]| f64::NAN);
+    for method in methods() {
+        let outcome = minimize(&problem, &*method, Budget::generations(10), 1).unwrap();
+        assert!(outcome.position.is_empty() && outcome.cost.is_infinite());
+        assert_eq!(outcome.failures.non_finite, outcome.evaluations);
+    }
+}
+
+#[test]
+fn each_budget_stops_with_its_reason_and_is_not_exceeded() {
+    let problem = rosenbrock();
+    let run = |budget| minimize(&problem, &Aep::paper(), budget, 3).unwrap();
+    let outcome = run(Budget::evaluations(1_030));
+    assert_eq!((outcome.stop, outcome.evaluations), (StopReason::Evaluations, 1_000));
+    let outcome = run(Budget::generations(5));
+    assert_eq!((outcome.stop, outcome.generations), (StopReason::Generations, 5));
+    let outcome = run(Budget::time(std::time::Duration::ZERO));
+    assert_eq!(outcome.stop, StopReason::Time);
+    assert_eq!(run(Budget::default().with_target(1e-3)).stop, StopReason::Target);
+    let flat = FnProblem::new(Domain::cube(2, 0.0, 1.0).unwrap(), |_: &[f64]| 1.0);
+    let budget = Budget::default().with_stagnation(20, 1e-9);
+    let outcome = minimize(&flat, &Aep::paper(), budget, 1).unwrap();
+    assert_eq!((outcome.stop, outcome.generations), (StopReason::Stagnation, 20));
+}
+
+#[test]
+fn a_logarithmic_component_is_searched_over_its_decades() {
+    let domain = Domain::new(vec![-5.0, 1e-9], vec![5.0, 1e9]).unwrap();
+    let domain = domain.with_scales(vec![Scale::Linear, Scale::Log]).unwrap();
+    let problem =
+        FnProblem::new(domain, |x: &[f64]| 2.0 + (x[0] - 1.0).powi(2) + (x[1] / 3e-6).ln().powi(2));
+    let outcome = minimize(&problem, &Aep::practical(), Budget::evaluations(20_000), 5).unwrap();
+    assert!(outcome.cost - 2.0 < 1e-6, "{outcome:?}");
+    assert!((outcome.position[1] / 3e-6 - 1.0).abs() < 1e-2, "{outcome:?}");
+}
+
+#[test]
+fn single_precision_works() {
+    let domain = Domain::<f32>::cube(3, -6.0, 6.0).unwrap();
+    let problem = FnProblem::new(domain, |x: &[f32]| x.iter().map(|v| v * v).sum());
+    let outcome = minimize(&problem, &Aep::paper(), Budget::generations(300), 1).unwrap();
+    assert!(outcome.cost < 1e-6, "{outcome:?}");
+}
