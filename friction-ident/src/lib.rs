@@ -20,6 +20,7 @@ pub mod challenge;
 pub mod closed_loop;
 pub mod driven;
 pub mod effects;
+pub mod family;
 pub mod model;
 pub mod reference;
 pub mod simulator;
