@@ -1,1 +1,119 @@
-//! Recordings from files: CSV and MATLAB v5, with column mapping, units and errors that say how to mend them.
+//! Recordings from files: CSV and MATLAB v5, with column mapping, units and errors that say how to
+//! mend them.
+//!
+//! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised
+//! by the ending of the name (`t_ms`, `Force [mN]`, `angle_deg`), other names are given by a
+//! [`Mapping`], from flags or from `DATA.toml` beside the data. Whatever the file holds, the
+//! recording is in SI: channels `force` (N or Nm), `position` (m or rad), `velocity`, `reference`,
+//! `temperature` (C).
+//!
+//! ```
+//! use aep_data::{Mapping, Source, parse};
+//! use std::path::Path;
+//!
+//! let mut text = String::from("t_ms;enc_mm;u_V\n");
+//! for k in 0..100 {
+//!     text += &format!("{k};{};{}\n", 0.25 * f64::from(k), 1.5);
+//! }
+//! let mapping = Mapping {
+//!     position: Source::column("enc_mm"),
+//!     force: Source { column: Some("u_V".into()), gain: Some(35.15), ..Source::default() },
+//!     ..Mapping::default()
+//! };
+//! let loaded = parse(Path::new("run.csv"), text.into_bytes(), &mapping)?;
+//! assert!((loaded.recording.interval() - 0.001).abs() < 1e-12);
+//! assert!((loaded.recording.require("force").unwrap()[0] - 52.725).abs() < 1e-9);
+//! # Ok::<(), aep_data::DataError>(())
+//! ```
+
+mod assemble;
+mod csv_table;
+mod error;
+mod header;
+mod layouts;
+mod mapping;
+mod mat_index;
+mod mat_table;
+mod pick;
+mod role;
+mod save;
+mod table;
+pub mod unit;
+mod write;
+
+use std::path::Path;
+
+pub use assemble::{Loaded, Origin};
+pub use error::{DataError, Problem};
+pub use layouts::{LAYOUTS, Layout};
+pub use mapping::{Mapping, Source, hold_name, parse_hold};
+pub use role::{ALL as ROLES, Facts, Role};
+pub use save::{SaveError, save};
+pub use write::{to_csv, to_toml};
+
+use csv_table::CsvTable;
+use mat_table::MatTable;
+use missing_physics::Recording;
+
+/// The recording in `path`, read by `mapping`, by `DATA.toml` beside it and by the columns' names,
+/// in this order.
+///
+/// # Errors
+/// Whatever is wrong with the file, with the place and a way to mend it.
+pub fn load(path: &Path, mapping: &Mapping) -> Result<Recording, DataError> {
+    read(path, mapping).map(|loaded| loaded.recording)
+}
+
+/// Like [`load`], and says how it was read.
+///
+/// # Errors
+/// Like [`load`].
+pub fn read(path: &Path, mapping: &Mapping) -> Result<Loaded, DataError> {
+    if path.is_dir() {
+        return Err(DataError::new(path, Problem::Directory { files: data_files(path) }));
+    }
+    let bytes = std::fs::read(path).map_err(|error| DataError::new(path, unreadable(&error)))?;
+    let mapping = mapping.or(&Mapping::beside(path)?);
+    parse(path, bytes, &mapping)
+}
+
+/// The recording in `bytes`, the content of a file called `path`; its format is told by the bytes.
+///
+/// # Errors
+/// Like [`load`].
+pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, DataError> {
+    let named_mat = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mat"));
+    if bytes.is_empty() {
+        return Err(DataError::new(path, Problem::Empty));
+    }
+    if mat_index::is_hdf5(&bytes) {
+        return Err(DataError::new(path, Problem::Hdf5));
+    }
+    if mat_index::is_mat5(&bytes) {
+        return assemble::assemble(path, &MatTable::parse(path, bytes)?, mapping);
+    }
+    if named_mat {
+        return Err(DataError::new(path, Problem::NotMat));
+    }
+    assemble::assemble(path, &CsvTable::parse(path, &bytes)?, mapping)
+}
+
+fn unreadable(error: &std::io::Error) -> Problem {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => Problem::Absent,
+        _ => Problem::Unreadable { message: error.to_string() },
+    }
+}
+
+/// The files of a folder that could be recordings, sorted.
+fn data_files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let paths = entries.map(|entry| entry.path());
+    let is_data = |path: &std::path::PathBuf| {
+        path.extension().is_some_and(|ending| ending == "csv" || ending == "mat")
+    };
+    let mut files: Vec<String> =
+        paths.filter(is_data).map(|path| path.display().to_string()).collect();
+    files.sort();
+    files
+}

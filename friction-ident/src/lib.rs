@@ -1,1 +1,37 @@
 //! A one-axis drive made of effects: friction laws, simulator, identification, and the model family for discovery.
+//!
+//! A [`Model`] is a mass and a list of [`effects`]. Driven along a measured motion it says which force
+//! the drive must have commanded:
+//!
+//! ```
+//! use friction_ident::{Axis, MeasuredMotion, Model, force_along};
+//!
+//! let model = Model::new(Axis::Linear, 30.0)?
+//!     .with("coulomb", &[("F_C", 8.0)])?
+//!     .with("viscous", &[("F_v", 200.0)])?;
+//! let (time, position, velocity) = ([0.0, 0.1, 0.2], [0.0, 0.01, 0.02], [0.1, 0.1, 0.1]);
+//! let motion = MeasuredMotion::new(&time, &position, &velocity, &[0.0; 3])?;
+//! assert_eq!(force_along(&model, &motion), [28.0; 3]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod axis;
+pub mod challenge;
+pub mod closed_loop;
+pub mod driven;
+pub mod effects;
+pub mod family;
+pub mod model;
+pub mod reference;
+pub mod simulator;
+
+mod signal;
+
+pub use axis::{Axis, Quantity};
+pub use challenge::Challenge;
+pub use closed_loop::{Controller, Pd, Setup, closed_loop};
+pub use driven::{Columns, MeasuredMotion, MotionError, columns_along, force_along};
+pub use effects::{Effect, Library};
+pub use model::{Model, ModelError};
+pub use reference::{Profile, Reference};
+pub use simulator::{Batch, Input, SimulationError, Start, Trajectory, simulate};

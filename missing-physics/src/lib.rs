@@ -3,10 +3,28 @@
 //! A measurement is compared with a model; the residual shows *where* the model fails, a screening of
 //! candidate terms shows *which* one is missing, and a ladder of refits shows what each of them gains
 //! on held-out data. The engine knows nothing of friction or any other subject: it works for every
-//! [`ModelFamily`](family::ModelFamily).
+//! [`ModelFamily`].
 
+pub mod basis;
+pub mod data_check;
+pub mod discover;
+pub mod family;
+pub mod fit;
+pub mod ladder;
+pub mod noise;
+pub mod placebo;
+pub mod quantity;
 pub mod recording;
 pub mod report;
+pub mod screen;
+pub mod search;
+pub mod shapes;
+pub mod split;
+pub mod uncertainty;
+pub mod verdict;
+pub mod where_it_fails;
 
+pub use discover::{DiscoverError, Event, Observer, Settings, discover, suggest};
+pub use family::{Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term};
 pub use recording::{Channel, Hold, Recording, RecordingError};
 pub use report::Discovery;

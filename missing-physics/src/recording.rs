@@ -115,6 +115,7 @@ impl Recording {
     ///
     /// # Errors
     /// The first [`RecordingError`] found.
+    #[expect(clippy::needless_pass_by_value, reason = "the column of a file is handed over")]
     pub fn with_segments(
         name: impl Into<String>,
         time: Vec<f64>,

@@ -88,6 +88,19 @@ pub struct Where {
     pub note: String,
 }
 
+/// Share of the error in one regime of the experiment; regimes do not overlap.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RegimeShare {
+    /// Name of the regime, e.g. `reversal`.
+    pub regime: String,
+    /// Share of the squared error, 0..1; all regimes sum to 1.
+    pub share: f64,
+    /// Share of the time, 0..1; all regimes sum to 1.
+    pub time_share: f64,
+    /// Root mean square of the residual inside, in the unit of the compared quantity.
+    pub rms: f64,
+}
+
 /// Effects that this data cannot tell apart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ambiguity {
@@ -141,6 +154,12 @@ pub struct Discovery {
     /// Where the base model fails.
     #[serde(default)]
     pub where_base: Vec<Where>,
+    /// Shares of the squared error of the last model by regime.
+    #[serde(default)]
+    pub regimes: Vec<RegimeShare>,
+    /// Shares of the squared error of the base model by regime.
+    #[serde(default)]
+    pub regimes_base: Vec<RegimeShare>,
     /// Effects that this data cannot tell apart.
     pub ambiguous: Vec<Ambiguity>,
     /// Size of the error that no model can remove, by quantity.

@@ -1,0 +1,176 @@
+//! From the columns of a file to a checked recording in SI.
+
+use std::path::Path;
+
+use missing_physics::{Channel, Recording, RecordingError};
+
+use crate::error::{DataError, Problem};
+use crate::layouts::Layout;
+use crate::mapping::Mapping;
+use crate::pick::Pick;
+use crate::role::{self, Role};
+use crate::table::Table;
+
+/// A recording and how it was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The measurement, in SI.
+    pub recording: Recording,
+    /// Where each quantity came from.
+    pub origins: Vec<Origin>,
+    /// The published data set whose names were recognised.
+    pub layout: Option<&'static str>,
+    /// Columns that nothing was read from.
+    pub unused: Vec<String>,
+}
+
+/// Where a quantity came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origin {
+    /// Name of the channel, or `time`.
+    pub channel: &'static str,
+    /// Column or product in the file.
+    pub column: String,
+    /// SI unit that it has now.
+    pub unit: &'static str,
+}
+
+/// Reads the quantities that `mapping` names, or that the names of the columns tell.
+pub(crate) fn assemble(
+    path: &Path,
+    table: &dyn Table,
+    mapping: &Mapping,
+) -> Result<Loaded, DataError> {
+    let names = table.names();
+    let layout = Layout::of(&names);
+    let mapping = layout.map_or_else(|| mapping.clone(), |known| mapping.or(&known.mapping()));
+    let picks = picks(path, table, &mapping)?;
+    let rotary = is_rotary(&picks).map_err(|problem| DataError::new(path, problem))?;
+    let recording = recording(path, table, &mapping, &picks, rotary)?;
+    let origins = picks.iter().map(|pick| origin(pick, rotary)).collect();
+    let used = |name: &String| picks.iter().any(|pick| pick.columns().any(|used| used == name));
+    let unused = names.iter().filter(|name| !used(name)).cloned().collect();
+    Ok(Loaded { recording, origins, layout: layout.map(|known| known.name), unused })
+}
+
+fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>, DataError> {
+    let mut picks = Vec::new();
+    for facts in role::ALL {
+        let counted = facts.role == Role::Time
+            && mapping.interval_s.is_some()
+            && mapping.time.column.is_none();
+        if !counted {
+            picks.extend(Pick::find(facts.role, mapping.source(facts.role), table, path)?);
+        }
+    }
+    Ok(picks)
+}
+
+fn unit(role: Role, rotary: bool) -> &'static str {
+    let facts = role.facts();
+    if rotary { facts.rotary.si() } else { facts.linear.si() }
+}
+
+fn origin(pick: &Pick, rotary: bool) -> Origin {
+    let unit = unit(pick.role, rotary);
+    Origin { channel: pick.role.facts().name, column: pick.expression.clone(), unit }
+}
+
+/// Whether the axis turns. Where no unit says so, it is linear.
+fn is_rotary(picks: &[Pick]) -> Result<bool, Problem> {
+    let first = |wanted: bool| picks.iter().find(|pick| pick.is_rotary() == Some(wanted));
+    let described =
+        |pick: &Pick, rotary| format!("'{}' in {}", pick.expression, unit(pick.role, rotary));
+    match (first(false), first(true)) {
+        (Some(linear), Some(rotary)) => Err(Problem::MixedAxis {
+            linear: described(linear, false),
+            rotary: described(rotary, true),
+        }),
+        (_, rotary) => Ok(rotary.is_some()),
+    }
+}
+
+fn recording(
+    path: &Path,
+    table: &dyn Table,
+    mapping: &Mapping,
+    picks: &[Pick],
+    rotary: bool,
+) -> Result<Recording, DataError> {
+    let mut time = None;
+    let mut segment = None;
+    let mut channels = Vec::new();
+    for pick in picks {
+        let values = pick.values(table, path)?;
+        match pick.role {
+            Role::Time => time = Some(values),
+            Role::Segment => segment = Some(whole(&values, pick, table, path)?),
+            role => channels.push(Channel::new(role.facts().name, unit(role, rotary), values)),
+        }
+    }
+    let samples = channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0);
+    let time = times(time, mapping.interval_s, samples).map_err(|p| DataError::new(path, p))?;
+    let segment = segment.unwrap_or_else(|| vec![0; time.len()]);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let recording = Recording::with_segments(name, time, channels, segment)
+        .map_err(|error| located(error, picks, table, path))?;
+    Ok(recording.with_hold(mapping.hold.unwrap_or_default()))
+}
+
+/// The times: as recorded, or counted from an interval.
+fn times(
+    recorded: Option<Vec<f64>>,
+    interval: Option<f64>,
+    samples: usize,
+) -> Result<Vec<f64>, Problem> {
+    let interval = match recorded {
+        Some(time) if time.len() != 1 || samples == 1 => return Ok(time),
+        // A single value is the sampling interval, as many MATLAB files keep it.
+        Some(time) => time.first().copied(),
+        None => interval,
+    };
+    let interval = interval.unwrap_or(0.0);
+    if !(interval > 0.0 && interval.is_finite()) {
+        let what = "the sampling interval".to_owned();
+        return Err(Problem::BadNumber { what, value: interval, must: "a time in s above 0" });
+    }
+    Ok((0..samples).map(|sample| sample as f64 * interval).collect())
+}
+
+fn whole(
+    values: &[f64],
+    pick: &Pick,
+    table: &dyn Table,
+    path: &Path,
+) -> Result<Vec<i64>, DataError> {
+    let broken = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 1e15);
+    if let Some(sample) = broken {
+        let error = DataError::new(path, Problem::Segment { value: values[sample] });
+        return Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression));
+    }
+    Ok(values.iter().map(|&value| value as i64).collect())
+}
+
+/// The recording counts samples; the user's file has lines and columns.
+fn located(error: RecordingError, picks: &[Pick], table: &dyn Table, path: &Path) -> DataError {
+    let column = |channel: &str| {
+        let pick = picks.iter().find(|pick| pick.role.facts().name == channel);
+        pick.map_or(channel, |pick| &pick.expression).to_owned()
+    };
+    match error {
+        RecordingError::TimeNotIncreasing { index, before, after } => {
+            DataError::new(path, Problem::TimeBackwards { before, after })
+                .at_sample(index, table.line(index))
+                .in_column(column("time"))
+        }
+        RecordingError::NotFinite { channel, index, value } => {
+            DataError::new(path, Problem::NotANumber { value: value.to_string() })
+                .at_sample(index, table.line(index))
+                .in_column(column(&channel))
+        }
+        RecordingError::Length { channel, values, samples } => {
+            DataError::new(path, Problem::Length { name: column(&channel), values, samples })
+        }
+        other => DataError::new(path, Problem::Recording(other)),
+    }
+}

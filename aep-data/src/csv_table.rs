@@ -1,0 +1,156 @@
+//! CSV: comma, semicolon or tab between the columns, comment lines, decimal commas.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use csv::{ByteRecord, ReaderBuilder, Trim};
+
+use crate::error::{DataError, Problem};
+use crate::table::{Bad, Column, Table, nearest};
+
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// A parsed CSV file.
+pub(crate) struct CsvTable {
+    path: PathBuf,
+    columns: Vec<Column>,
+    lines: Vec<u64>,
+}
+
+impl CsvTable {
+    /// Parses `bytes`, the content of `path`.
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, DataError> {
+        let fail = |problem| DataError::new(path, problem);
+        let bytes = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+        check_text(bytes).map_err(fail)?;
+        let delimiter = delimiter(bytes).ok_or_else(|| fail(Problem::Empty))?;
+        let mut reader = ReaderBuilder::new()
+            .delimiter(delimiter)
+            .comment(Some(comment(bytes)))
+            .trim(Trim::All)
+            .flexible(true)
+            .from_reader(bytes);
+        let header = reader.byte_headers().map_err(|error| fail(unreadable(&error)))?.clone();
+        let mut table = Self { path: path.to_owned(), columns: columns(&header), lines: vec![] };
+        table.check_header(header.position().map(csv::Position::line))?;
+        let mut record = ByteRecord::new();
+        while reader.read_byte_record(&mut record).map_err(|error| fail(unreadable(&error)))? {
+            table.push(&record, delimiter)?;
+        }
+        if table.lines.is_empty() {
+            return Err(fail(Problem::HeaderOnly));
+        }
+        Ok(table)
+    }
+
+    fn check_header(&self, line: Option<u64>) -> Result<(), DataError> {
+        let fail = |problem| Err(DataError::new(&self.path, problem).at_line(line));
+        if self.columns.iter().all(|column| column.name.parse::<f64>().is_ok()) {
+            return fail(Problem::NoHeader { columns: self.columns.len() });
+        }
+        let mut seen = BTreeSet::new();
+        let twice = self.columns.iter().find(|c| !c.name.is_empty() && !seen.insert(&c.name));
+        match twice {
+            Some(column) => fail(Problem::DuplicateColumn { name: column.name.clone() }),
+            None => Ok(()),
+        }
+    }
+
+    fn push(&mut self, record: &ByteRecord, delimiter: u8) -> Result<(), DataError> {
+        let line = record.position().map_or(0, csv::Position::line);
+        let (fields, columns) = (record.len(), self.columns.len());
+        // A separator at the end of each line is common and harmless.
+        let surplus = (columns..fields).any(|index| !record[index].is_empty());
+        if fields < columns || surplus {
+            let problem = Problem::RaggedRow { fields: fields as u64, columns: columns as u64 };
+            return Err(DataError::new(&self.path, problem).at_line(Some(line)));
+        }
+        let sample = self.lines.len();
+        self.lines.push(line);
+        for (column, field) in self.columns.iter_mut().zip(record) {
+            let value = number(field, delimiter);
+            if value.is_none() && column.bad.is_none() {
+                let text = String::from_utf8_lossy(field).into_owned();
+                column.bad = Some(Bad { sample, text });
+            }
+            column.values.push(value.unwrap_or(f64::NAN));
+        }
+        Ok(())
+    }
+}
+
+impl Table for CsvTable {
+    fn names(&self) -> Vec<String> {
+        self.columns.iter().map(|column| column.name.clone()).collect()
+    }
+
+    fn column(&self, name: &str) -> Result<Column, DataError> {
+        let found = self.columns.iter().find(|column| column.name == name);
+        found.cloned().ok_or_else(|| DataError::new(&self.path, self.missing("column", Some(name))))
+    }
+
+    fn line(&self, sample: usize) -> Option<u64> {
+        self.lines.get(sample).copied()
+    }
+
+    fn missing(&self, role: &'static str, column: Option<&str>) -> Problem {
+        let present = self.names();
+        let nearest = nearest(column.unwrap_or(role), &present);
+        Problem::MissingColumn { role, column: column.map(str::to_owned), present, nearest }
+    }
+}
+
+fn columns(header: &ByteRecord) -> Vec<Column> {
+    let names = header.iter().map(|name| String::from_utf8_lossy(name).into_owned());
+    names.map(|name| Column { name, values: vec![], bad: None }).collect()
+}
+
+fn check_text(bytes: &[u8]) -> Result<(), Problem> {
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(Problem::Empty);
+    }
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(Problem::NotText { what: "it is UTF-16" });
+    }
+    if bytes.starts_with(b"PK\x03\x04") {
+        return Err(Problem::NotText { what: "it is a ZIP archive or a spreadsheet" });
+    }
+    if bytes[..bytes.len().min(4096)].contains(&0) {
+        return Err(Problem::NotText { what: "it holds zero bytes" });
+    }
+    Ok(())
+}
+
+fn first_line(bytes: &[u8]) -> Option<&[u8]> {
+    let lines = bytes.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let mut lines = lines.filter(|line| !line.is_empty());
+    lines.find(|line| !matches!(line[0], b'#' | b'%'))
+}
+
+/// What separates the columns: whatever occurs most often in the header.
+fn delimiter(bytes: &[u8]) -> Option<u8> {
+    let line = first_line(bytes)?;
+    let count = |wanted: u8| line.split(|&byte| byte == wanted).count();
+    [b'\t', b';', b','].into_iter().max_by_key(|&candidate| count(candidate))
+}
+
+/// Comments begin with `#`, or with `%` as MATLAB writes them.
+fn comment(bytes: &[u8]) -> u8 {
+    match bytes.trim_ascii_start().first() {
+        Some(b'%') => b'%',
+        _ => b'#',
+    }
+}
+
+fn number(field: &[u8], delimiter: u8) -> Option<f64> {
+    let text = std::str::from_utf8(field).ok()?.trim();
+    let value = text.parse().ok().or_else(|| {
+        let decimal_comma = delimiter != b',' && text.contains(',');
+        decimal_comma.then(|| text.replacen(',', ".", 1).parse().ok()).flatten()
+    })?;
+    f64::is_finite(value).then_some(value)
+}
+
+fn unreadable(error: &csv::Error) -> Problem {
+    Problem::Unreadable { message: error.to_string() }
+}

@@ -1,0 +1,113 @@
+//! What the name of a column says: which quantity, in which unit.
+
+use crate::role::{Facts, Role};
+use crate::unit::{self, Unit};
+
+/// The name of a column, taken apart.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Header<'a> {
+    /// The name without its unit, lower case, blanks as underscores.
+    pub base: String,
+    /// The unit, where it is known.
+    pub unit: Option<&'static Unit>,
+    /// The unit as written in brackets, known or not.
+    pub bracketed: Option<&'a str>,
+}
+
+impl<'a> Header<'a> {
+    /// Takes apart `force_N`, `Force [N]`, `force (N)`, `force`.
+    pub fn parse(name: &'a str) -> Self {
+        if let Some((base, text)) = brackets(name) {
+            return Self { base: plain(base), unit: unit::find(text), bracketed: Some(text) };
+        }
+        // The leftmost underscore first: `speed_m_s` is in m/s, not in s.
+        let endings = name.match_indices('_').map(|(at, _)| name.split_at(at));
+        let known = endings
+            .filter(|(base, _)| !base.is_empty())
+            .find_map(|(base, rest)| unit::find(&rest[1..]).map(|unit| (base, unit)));
+        match known {
+            Some((base, unit)) => Self { base: plain(base), unit: Some(unit), bracketed: None },
+            None => Self { base: plain(name), unit: None, bracketed: None },
+        }
+    }
+
+    fn suits(&self, role: Role) -> bool {
+        self.unit.is_none_or(|unit| role.accepts(unit.quantity))
+    }
+}
+
+/// The column among `names` that holds `role`, by the names it is known under.
+pub(crate) fn recognise(role: Role, names: &[String]) -> Option<&String> {
+    let headers: Vec<Header> = names.iter().map(|name| Header::parse(name)).collect();
+    role.facts().aliases.iter().find_map(|alias| {
+        let index =
+            headers.iter().position(|header| header.base == *alias && header.suits(role))?;
+        names.get(index)
+    })
+}
+
+/// A column that is called like `role` but ends in something that is no unit: `force_foo`.
+pub(crate) fn unit_unknown(role: Role, names: &[String]) -> Option<(&str, &str)> {
+    names.iter().find_map(|name| ending(role.facts(), name).map(|unit| (name.as_str(), unit)))
+}
+
+fn ending<'a>(facts: &Facts, name: &'a str) -> Option<&'a str> {
+    let (base, ending) = name.split_once('_')?;
+    let long_name = facts.aliases.iter().any(|a| a.len() >= 4 && base.eq_ignore_ascii_case(a));
+    let like_a_unit = (1..=4).contains(&ending.len()) && !ending.contains('_');
+    (long_name && like_a_unit && unit::find(ending).is_none()).then_some(ending)
+}
+
+fn brackets(name: &str) -> Option<(&str, &str)> {
+    let name = name.trim();
+    let (open, close) = if name.ends_with(']') { ('[', ']') } else { ('(', ')') };
+    let (base, text) = name.strip_suffix(close)?.split_once(open)?;
+    (!base.trim().is_empty()).then_some((base, text.trim()))
+}
+
+fn plain(base: &str) -> String {
+    base.trim().to_lowercase().replace([' ', '-', '.'], "_")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(list: &[&str]) -> Vec<String> {
+        list.iter().map(|name| (*name).to_owned()).collect()
+    }
+
+    #[test]
+    fn units_are_read_from_endings_and_brackets() {
+        for (name, base, unit) in [
+            ("force_N", "force", "N"),
+            ("Motor Force [mN]", "motor_force", "mN"),
+            ("speed_m_s", "speed", "m/s"),
+            ("q_ref_m", "q_ref", "m"),
+            ("angle (deg)", "angle", "deg"),
+            ("x [\u{b5}m]", "x", "um"),
+        ] {
+            let header = Header::parse(name);
+            assert_eq!((header.base.as_str(), header.unit.map(|u| u.name)), (base, Some(unit)));
+        }
+        assert_eq!(Header::parse("position").unit, None);
+    }
+
+    #[test]
+    fn the_best_name_wins_and_a_wrong_unit_disqualifies() {
+        let columns = names(&["t_s", "x_ref_m", "x_mm", "position_V", "tau_Nm"]);
+        assert_eq!(recognise(Role::Position, &columns).unwrap(), "x_mm");
+        assert_eq!(recognise(Role::Reference, &columns).unwrap(), "x_ref_m");
+        assert_eq!(recognise(Role::Force, &columns).unwrap(), "tau_Nm");
+        assert_eq!(recognise(Role::Velocity, &columns), None);
+    }
+
+    #[test]
+    fn an_unknown_unit_is_noticed() {
+        assert_eq!(
+            unit_unknown(Role::Force, &names(&["t", "force_foo"])),
+            Some(("force_foo", "foo"))
+        );
+        assert_eq!(unit_unknown(Role::Force, &names(&["t", "x_foo"])), None);
+    }
+}

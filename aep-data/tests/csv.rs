@@ -1,0 +1,107 @@
+//! CSV as instruments, spreadsheets and people write it.
+
+use std::path::Path;
+
+use aep_data::{Loaded, Mapping, Source, load, parse, to_csv, to_toml};
+use missing_physics::{Channel, Hold, Recording};
+
+fn read(text: &str, mapping: &Mapping) -> Loaded {
+    parse(Path::new("run.csv"), text.as_bytes().to_vec(), mapping).unwrap()
+}
+
+/// A table with `header` and 20 rows made by `row`.
+fn table(header: &str, row: impl Fn(u32) -> String) -> String {
+    let rows: Vec<String> = (0..20).map(row).collect();
+    format!("{header}\n{}\n", rows.join("\n"))
+}
+
+fn plain(k: u32) -> String {
+    format!("{k},{},{}", 2 * k, 3 * k)
+}
+
+#[test]
+fn units_in_the_header_become_si() {
+    let text = table("t [ms],Force (mN),x_um", plain);
+    let recording = read(&text, &Mapping::default()).recording;
+    assert!((recording.time()[1] - 1e-3).abs() < 1e-15);
+    assert!((recording.require("force").unwrap()[1] - 2e-3).abs() < 1e-15);
+    assert!((recording.require("position").unwrap()[1] - 3e-6).abs() < 1e-15);
+    assert_eq!(recording.channel("force").unwrap().unit, "N");
+}
+
+#[test]
+fn a_rotary_axis_is_recognised_by_its_units() {
+    let recording =
+        read(&table("time_s,torque_mNm,angle_deg", plain), &Mapping::default()).recording;
+    assert_eq!(recording.channel("force").unwrap().unit, "Nm");
+    assert_eq!(recording.channel("position").unwrap().unit, "rad");
+    assert!((recording.require("position").unwrap()[1] - 3_f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn semicolons_decimal_commas_tabs_and_marks_are_read() {
+    let semicolons = table("\u{feff}time_s;force_N;position_m", |k| format!("{k};1,5;0,25;"));
+    let recording = read(&semicolons, &Mapping::default()).recording;
+    assert_eq!(recording.require("force").unwrap()[0], 1.5);
+    let tabs = table("% exported\ntime_s\tforce_N\tposition_m", |k| format!("{k}\t1.5\t0.25"));
+    assert_eq!(read(&tabs, &Mapping::default()).recording.len(), 20);
+    let windows = table("time_s,force_N,position_m", plain).replace('\n', "\r\n");
+    assert_eq!(read(&windows, &Mapping::default()).recording.len(), 20);
+}
+
+#[test]
+fn text_in_columns_nobody_needs_is_no_error() {
+    let text = table("time_s,force_N,position_m,comment", |k| format!("{},ok", plain(k)));
+    let loaded = read(&text, &Mapping::default());
+    assert_eq!(loaded.unused, ["comment"]);
+}
+
+#[test]
+fn products_gains_and_an_interval_without_a_time() {
+    let mapping = Mapping {
+        force: Source { column: Some("duty*V".into()), gain: Some(-2.0), unit: Some("mNm".into()) },
+        position: Source::column("q_rad"),
+        interval_s: Some(0.005),
+        hold: Some(Hold::ZeroOrder),
+        ..Mapping::default()
+    };
+    let loaded = read(&table("duty,V,q_rad", plain), &mapping);
+    let recording = loaded.recording;
+    assert!((recording.require("force").unwrap()[2] + 2.0 * 2.0 * 4.0 * 1e-3).abs() < 1e-15);
+    assert!((recording.interval() - 0.005).abs() < 1e-15);
+    assert_eq!(recording.hold(), Hold::ZeroOrder);
+    assert_eq!(recording.channel("force").unwrap().unit, "Nm");
+}
+
+#[test]
+fn a_mapping_beside_the_data_is_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    std::fs::write(&path, table("t_s,u_V,q_m", plain)).unwrap();
+    let toml = "hold = \"zero-order\"\nforce = { column = \"u_V\", gain = 35.0 }\n";
+    std::fs::write(path.with_extension("toml"), toml).unwrap();
+    let recording = load(&path, &Mapping::default()).unwrap();
+    assert_eq!(recording.require("force").unwrap()[1], 70.0);
+    assert_eq!(recording.hold(), Hold::ZeroOrder);
+}
+
+#[test]
+fn what_is_written_reads_back_to_the_bit() {
+    let values = |scale: f64| (0..40).map(|k| f64::from(k).sin() * scale).collect::<Vec<f64>>();
+    let time: Vec<f64> = (0..40).map(|k| f64::from(k % 20) * 1e-3).collect();
+    for (force, position, velocity) in [("N", "m", "m/s"), ("Nm", "rad", "rad/s")] {
+        let channels = vec![
+            Channel::new("force", force, values(1e3)),
+            Channel::new("position", position, values(1e-9)),
+            Channel::new("velocity", velocity, values(0.1)),
+            Channel::new("reference", position, values(1.0)),
+            Channel::new("temperature", "C", values(20.0)),
+        ];
+        let segment = (0..40).map(|k| i64::from(k >= 20)).collect();
+        let recording =
+            Recording::with_segments("run.csv", time.clone(), channels, segment).unwrap();
+        let recording = recording.with_hold(Hold::ZeroOrder);
+        let mapping = Mapping::parse(&to_toml(&recording), Path::new("run.toml")).unwrap();
+        assert_eq!(read(&to_csv(&recording), &mapping).recording, recording);
+    }
+}

@@ -1,0 +1,325 @@
+//! The plant driven along a measured motion: which force must the drive command so that the model
+//! follows the measurement?
+//!
+//! `F = m a + smooth forces + level h`: `h` is the direction of sliding, or what the elastic contact
+//! makes of the measured displacements. The effects' hooks are those of the simulator; effects
+//! without memory take one lane per sample.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use crate::effects::{Effect, Motion, Parameters, Role, Slot, Smooth, broadcast};
+use crate::model::{MASS, Model, Term, address};
+
+/// Samples that go through the hooks at once: large enough to hide the calls, small enough for the
+/// first-level cache.
+const BLOCK: usize = 128;
+
+/// Channels of a motion that do not fit together.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// A channel has more or fewer values than there are times.
+    #[error("{channel} has {values} values, but there are {samples} times")]
+    Length {
+        /// Which channel.
+        channel: &'static str,
+        /// Its values.
+        values: usize,
+        /// Number of times.
+        samples: usize,
+    },
+    /// A segment reaches beyond the samples.
+    #[error("segment {start}..{end} reaches beyond the {samples} samples")]
+    Segment {
+        /// First sample.
+        start: usize,
+        /// One past the last sample.
+        end: usize,
+        /// Number of times.
+        samples: usize,
+    },
+}
+
+/// A measured, smoothed motion. SI units.
+#[derive(Clone, Debug)]
+pub struct MeasuredMotion<'a> {
+    time: &'a [f64],
+    position: &'a [f64],
+    velocity: &'a [f64],
+    acceleration: &'a [f64],
+    drive_force: Option<&'a [f64]>,
+    segments: Vec<Range<usize>>,
+}
+
+impl<'a> MeasuredMotion<'a> {
+    /// One piece of motion, one value per time.
+    ///
+    /// # Errors
+    /// [`MotionError::Length`].
+    pub fn new(
+        time: &'a [f64],
+        position: &'a [f64],
+        velocity: &'a [f64],
+        acceleration: &'a [f64],
+    ) -> Result<Self, MotionError> {
+        check("position", position, time)?;
+        check("velocity", velocity, time)?;
+        check("acceleration", acceleration, time)?;
+        let segments = std::iter::once(0..time.len()).collect();
+        Ok(Self { time, position, velocity, acceleration, drive_force: None, segments })
+    }
+
+    /// The same in several pieces; contact and memory start anew in each.
+    ///
+    /// # Errors
+    /// [`MotionError::Segment`].
+    pub fn with_segments(mut self, segments: &[Range<usize>]) -> Result<Self, MotionError> {
+        let samples = self.time.len();
+        if let Some(bad) = segments.iter().find(|s| s.end > samples || s.start > s.end) {
+            return Err(MotionError::Segment { start: bad.start, end: bad.end, samples });
+        }
+        self.segments = segments.to_vec();
+        Ok(self)
+    }
+
+    /// The same with the measured force of the drive, for effects that depend on the load.
+    ///
+    /// # Errors
+    /// [`MotionError::Length`].
+    pub fn with_drive_force(mut self, force: &'a [f64]) -> Result<Self, MotionError> {
+        check("drive force", force, self.time)?;
+        self.drive_force = Some(force);
+        Ok(self)
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there are no samples.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}
+
+fn check(channel: &'static str, values: &[f64], time: &[f64]) -> Result<(), MotionError> {
+    let (values, samples) = (values.len(), time.len());
+    if values == samples { Ok(()) } else { Err(MotionError::Length { channel, values, samples }) }
+}
+
+/// The force that the drive must command for `model` to follow `motion`, N or N m.
+pub fn force_along(model: &Model, motion: &MeasuredMotion<'_>) -> Vec<f64> {
+    let walk = Walk::new(model, motion);
+    let mut force = walk.smooth_force(model.terms());
+    for ((force, friction), a) in force.iter_mut().zip(&walk.friction).zip(motion.acceleration) {
+        *force += friction + model.mass() * a;
+    }
+    add(&mut force, &walk.attached);
+    walk.invert_drive(model, &mut force);
+    force
+}
+
+/// The force of [`force_along`] as `rest + sum_k value_k column_k` over the mass and all amplitude
+/// parameters. Exact without a contact; with one, the contact's utilisation `h` is the model's own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Columns {
+    /// Address of each column.
+    pub addresses: Vec<String>,
+    /// Force per unit of the parameter, one value per sample.
+    pub columns: Vec<Vec<f64>>,
+    /// Force of whatever has no amplitude.
+    pub rest: Vec<f64>,
+}
+
+/// Splits [`force_along`] into columns.
+pub fn columns_along(model: &Model, motion: &MeasuredMotion<'_>) -> Columns {
+    let walk = Walk::new(model, motion);
+    let mut addresses = vec![MASS.to_owned()];
+    let mut columns = vec![motion.acceleration.to_vec()];
+    for term in model.terms() {
+        let about = term.effect().about();
+        for (k, parameter) in about.parameters.iter().enumerate() {
+            if parameter.role == Role::Amplitude {
+                addresses.push(address(term.effect(), parameter.name));
+                columns.push(walk.column(term, k));
+            }
+        }
+    }
+    let mut rest = walk.attached.clone();
+    rest.resize(motion.len(), 0.0);
+    for column in columns.iter_mut().chain(std::iter::once(&mut rest)) {
+        walk.invert_drive(model, column);
+    }
+    Columns { addresses, columns, rest }
+}
+
+/// A model's friction along a motion.
+struct Walk<'a> {
+    motion: &'a MeasuredMotion<'a>,
+    direction: Vec<f64>,
+    level_velocity: Cow<'a, [f64]>,
+    dwell: Vec<f64>,
+    bond: Vec<f64>,
+    drive_force: Cow<'a, [f64]>,
+    /// Friction force.
+    friction: Vec<f64>,
+    /// Utilisation of the friction level, -1..1.
+    used: Vec<f64>,
+    /// Force of attached bodies; empty without any.
+    attached: Vec<f64>,
+}
+
+impl<'a> Walk<'a> {
+    fn new(model: &Model, motion: &'a MeasuredMotion<'a>) -> Self {
+        let samples = motion.len();
+        let drive_force = motion.drive_force.map_or_else(|| vec![0.0; samples].into(), Cow::from);
+        let mut walk = Self {
+            motion,
+            direction: motion.velocity.iter().map(|v| sign(*v)).collect(),
+            level_velocity: Cow::from(motion.velocity),
+            dwell: vec![0.0; samples],
+            bond: vec![1.0; samples],
+            drive_force,
+            friction: Vec::new(),
+            used: Vec::new(),
+            attached: Vec::new(),
+        };
+        let level = walk.friction_level(model.terms());
+        walk.slide(model, &level);
+        for term in model.terms().iter().filter(|t| t.effect().about().acts_on(Slot::Attached)) {
+            let force = walk.element(term, &vec![0.0; samples]);
+            walk.attached.resize(samples, 0.0);
+            add(&mut walk.attached, &force);
+        }
+        walk
+    }
+
+    /// Friction force and utilisation at `level`.
+    fn slide(&mut self, model: &Model, level: &[f64]) {
+        let contact = model.terms().iter().find(|t| t.effect().about().acts_on(Slot::Contact));
+        if let Some(contact) = contact {
+            self.friction = self.element(contact, level);
+            let used =
+                |(force, level): (&f64, &f64)| if *level > 0.0 { force / level } else { 0.0 };
+            self.used = self.friction.iter().zip(level).map(used).collect();
+        } else {
+            self.friction = level.iter().zip(&self.direction).map(|(l, d)| l * d).collect();
+            self.used.clone_from(&self.direction);
+        }
+    }
+
+    /// Force of a term's element along the motion.
+    fn element(&self, term: &Term, level: &[f64]) -> Vec<f64> {
+        let mut force = vec![0.0; self.motion.len()];
+        let Some(element) = term.effect().element() else { return force };
+        let mut state = vec![0.0; element.states()];
+        for segment in self.motion.segments.iter().filter(|segment| !segment.is_empty()) {
+            let path = self.path(segment, level);
+            let first = self.direction[segment.clone()].iter().find(|d| **d != 0.0);
+            let level = level[segment.start];
+            element.start(term.values(), level, first.copied().unwrap_or(0.0), &mut state);
+            element.along(term.values(), &path, &mut state, &mut force[segment.clone()]);
+        }
+        force
+    }
+
+    /// Duration, displacement and level of the step to each sample.
+    fn path(&self, segment: &Range<usize>, level: &[f64]) -> Vec<(f64, f64, f64)> {
+        let (time, position) = (self.motion.time, self.motion.position);
+        let step = |k: usize| {
+            let before = if k == segment.start { k } else { k - 1 };
+            (time[k] - time[before], position[k] - position[before], level[k])
+        };
+        segment.clone().map(step).collect()
+    }
+
+    fn smooth_force(&self, terms: &[Term]) -> Vec<f64> {
+        let mut damping = [0.0; BLOCK];
+        self.sum(terms, Slot::SmoothForce, |effect, p, m, force| {
+            let damping = &mut damping[..force.len()];
+            effect.smooth_force(p, m, &mut Smooth { force, damping });
+        })
+    }
+
+    fn friction_level(&self, terms: &[Term]) -> Vec<f64> {
+        let mut level = self.sum(terms, Slot::FrictionLevel, |effect, p, m, level| {
+            effect.friction_level(p, m, level);
+        });
+        for level in &mut level {
+            *level = level.max(0.0);
+        }
+        level
+    }
+
+    /// Column of amplitude `k` of `term`.
+    fn column(&self, term: &Term, k: usize) -> Vec<f64> {
+        let unit = &[term.with_unit_amplitude(k)];
+        let mut column = self.smooth_force(unit);
+        // Not `friction_level`: a column may be negative, only the sum of all is cut off.
+        let level = self.sum(unit, Slot::FrictionLevel, |e, p, m, out| e.friction_level(p, m, out));
+        for ((column, level), used) in column.iter_mut().zip(level).zip(&self.used) {
+            *column += level * used;
+        }
+        column
+    }
+
+    /// Sums a hook over all terms that act on `slot`, block by block.
+    fn sum(
+        &self,
+        terms: &[Term],
+        slot: Slot,
+        mut hook: impl FnMut(&dyn Effect, Parameters<'_>, &Motion<'_>, &mut [f64]),
+    ) -> Vec<f64> {
+        let active: Vec<(&dyn Effect, Vec<f64>)> = terms
+            .iter()
+            .filter(|term| term.effect().about().acts_on(slot))
+            .map(|term| (term.effect(), broadcast(term.values(), BLOCK)))
+            .collect();
+        let mut out = vec![0.0; self.motion.len()];
+        for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+            let start = block * BLOCK;
+            let motion = self.motion_of(start..start + out.len());
+            for (effect, values) in &active {
+                hook(*effect, Parameters::new(values, BLOCK), &motion, out);
+            }
+        }
+        out
+    }
+
+    fn motion_of(&self, r: Range<usize>) -> Motion<'_> {
+        Motion {
+            time: &self.motion.time[r.clone()],
+            position: &self.motion.position[r.clone()],
+            velocity: &self.motion.velocity[r.clone()],
+            direction: &self.direction[r.clone()],
+            level_velocity: &self.level_velocity[r.clone()],
+            dwell: &self.dwell[r.clone()],
+            bond: &self.bond[r.clone()],
+            drive_force: &self.drive_force[r],
+        }
+    }
+
+    /// Replaces the force on the mass by the command that causes it.
+    fn invert_drive(&self, model: &Model, force: &mut [f64]) {
+        for term in model.terms().iter().rev() {
+            let Some(drive) = term.effect().drive() else { continue };
+            for segment in &self.motion.segments {
+                let time = &self.motion.time[segment.clone()];
+                drive.invert(term.values(), time, &mut force[segment.clone()]);
+            }
+        }
+    }
+}
+
+fn sign(v: f64) -> f64 {
+    if v == 0.0 { 0.0 } else { v.signum() }
+}
+
+fn add(to: &mut [f64], from: &[f64]) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+}
+
+#[cfg(test)]
+mod tests;

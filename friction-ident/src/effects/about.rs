@@ -1,0 +1,185 @@
+//! What is known of an effect besides its code: name, equation, parameters, fingerprint, source.
+
+use crate::axis::{Axis, Quantity};
+
+/// How a parameter enters the force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The effect is linear in it and absent where all its amplitudes are 0.
+    Amplitude,
+    /// Anything else that is fitted: a velocity, a period, a stiffness, a lag.
+    Shape,
+    /// Not fitted: taken from the data or from the machine's drawing (a stroke, a pole pitch).
+    Fixed,
+}
+
+/// On which scale a parameter is searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Uniform between the bounds.
+    Linear,
+    /// Uniform in the logarithm; the value must be positive.
+    Log,
+}
+
+/// One parameter of an effect. Bounds and default are those of a small ball-screw table; see
+/// [`Parameter::range`] for another axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameter {
+    /// Symbol, as in files and on the command line.
+    pub name: &'static str,
+    /// What it is, in words.
+    pub meaning: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// How it enters the force.
+    pub role: Role,
+    /// Smallest value of a search. 0 for a friction level, a stiffness, a lag.
+    pub low: f64,
+    /// Largest value of a search.
+    pub high: f64,
+    /// Scale of a search.
+    pub scale: Scale,
+    /// Typical value.
+    pub default: f64,
+}
+
+impl Parameter {
+    /// A signed amplitude, searched within `+-high`.
+    pub const fn signed(
+        name: &'static str,
+        meaning: &'static str,
+        quantity: Quantity,
+        high: f64,
+        default: f64,
+    ) -> Self {
+        let (role, scale) = (Role::Amplitude, Scale::Linear);
+        Self { name, meaning, quantity, role, low: -high, high, scale, default }
+    }
+
+    /// An amplitude that physics keeps at or above 0.
+    pub const fn level(
+        name: &'static str,
+        meaning: &'static str,
+        quantity: Quantity,
+        high: f64,
+        default: f64,
+    ) -> Self {
+        let (role, scale) = (Role::Amplitude, Scale::Linear);
+        Self { name, meaning, quantity, role, low: 0.0, high, scale, default }
+    }
+
+    /// A positive shape parameter, searched on a logarithmic scale.
+    pub const fn shape(
+        name: &'static str,
+        meaning: &'static str,
+        quantity: Quantity,
+        (low, high): (f64, f64),
+        default: f64,
+    ) -> Self {
+        let (role, scale) = (Role::Shape, Scale::Log);
+        Self { name, meaning, quantity, role, low, high, scale, default }
+    }
+
+    /// A parameter that is not fitted.
+    pub const fn fixed(
+        name: &'static str,
+        meaning: &'static str,
+        quantity: Quantity,
+        (low, high): (f64, f64),
+        default: f64,
+    ) -> Self {
+        let (role, scale) = (Role::Fixed, Scale::Linear);
+        Self { name, meaning, quantity, role, low, high, scale, default }
+    }
+
+    /// The same, searched on a linear scale.
+    #[must_use]
+    pub const fn linear(mut self) -> Self {
+        self.scale = Scale::Linear;
+        self
+    }
+
+    /// Bounds of a search on `axis`, SI.
+    pub fn range(&self, axis: Axis) -> (f64, f64) {
+        let factor = axis.typical(self.quantity);
+        (self.low * factor, self.high * factor)
+    }
+
+    /// Typical value on `axis`, SI.
+    pub fn typical(&self, axis: Axis) -> f64 {
+        self.default * axis.typical(self.quantity)
+    }
+
+    /// Whether a model may carry `value`: finite, positive where the scale is logarithmic. Bounds
+    /// are for searches; a file may go beyond them.
+    pub fn accepts(&self, value: f64) -> bool {
+        value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
+    }
+}
+
+/// Where an effect acts on the plant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// What happens to the commanded force before it reaches the mass.
+    Drive,
+    /// A force that depends on time, position and velocity.
+    SmoothForce,
+    /// The level of the set-valued friction.
+    FrictionLevel,
+    /// How the friction contact deforms before it slides.
+    Contact,
+    /// Another body that hangs on the mass.
+    Attached,
+    /// Which past the friction level remembers.
+    Memory,
+    /// What happens to the position before it is recorded.
+    Sensor,
+}
+
+impl Slot {
+    /// The slot's name, for tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Drive => "drive",
+            Self::SmoothForce => "smooth force",
+            Self::FrictionLevel => "friction level",
+            Self::Contact => "contact",
+            Self::Attached => "attached body",
+            Self::Memory => "memory",
+            Self::Sensor => "sensor",
+        }
+    }
+}
+
+/// All that is to be said of an effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct About {
+    /// Identifier in files, commands and JSON.
+    pub name: &'static str,
+    /// Name in words.
+    pub title: &'static str,
+    /// What is added to the model, with the symbols of `parameters`; `v` velocity, `x` position,
+    /// `s = sgn v`.
+    pub equation: &'static str,
+    /// Its parameters, in the order of a model's values.
+    pub parameters: &'static [Parameter],
+    /// Where it acts.
+    pub slots: &'static [Slot],
+    /// What a residual looks like when the model lacks the effect.
+    pub shows: &'static str,
+    /// Where the law comes from.
+    pub reference: &'static str,
+}
+
+impl About {
+    /// Index of the parameter called `name`.
+    pub fn parameter(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|parameter| parameter.name == name)
+    }
+
+    /// Whether it acts through `slot`.
+    pub fn acts_on(&self, slot: Slot) -> bool {
+        self.slots.contains(&slot)
+    }
+}

@@ -1,0 +1,74 @@
+//! Friction that differs between the two directions of motion.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::axis::Quantity;
+
+/// Half differences: `F_C+ = F_C + dF_C`, `F_C- = F_C - dF_C`, likewise for `F_v`.
+///
+/// While the axis slides, `dF_C s s = dF_C` looks like an offset; at rest and in the breakaway
+/// force it does not. `dF_v s v = dF_v |v|`.
+#[derive(Clone, Copy, Debug)]
+pub struct Asymmetry;
+
+static ABOUT: About = About {
+    name: "asymmetry",
+    title: "direction-dependent friction",
+    equation: "(dF_C s + dF_v |v| s) s",
+    parameters: &[
+        Parameter::signed(
+            "dF_C",
+            "half difference of the friction levels (+ minus -)",
+            Quantity::Force,
+            100.0,
+            1.0,
+        ),
+        Parameter::signed(
+            "dF_v",
+            "half difference of the dampings (+ minus -)",
+            Quantity::Damping,
+            1000.0,
+            30.0,
+        ),
+    ],
+    slots: &[Slot::FrictionLevel, Slot::SmoothForce],
+    shows: "two levels or two slopes in (residual x sign of velocity) against speed",
+    reference: "A. Janot, M. Gautier, M. Brunot, data set EMPS, 2019 (F_v 167 and 240 N s/m)",
+};
+
+impl Effect for Asymmetry {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
+        for ((level, half), direction) in level.iter_mut().zip(p.get(0)).zip(m.direction) {
+            *level += half * direction;
+        }
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        let lanes = out.force.len();
+        let (half, velocity) = (&p.get(1)[..lanes], &m.velocity[..lanes]);
+        let (force, slope) = (&mut out.force[..lanes], &mut out.damping[..lanes]);
+        for i in 0..lanes {
+            force[i] += half[i] * velocity[i].abs();
+            // Negative on one side: there it lowers the positive slope of `viscous`.
+            slope[i] += half[i] * velocity[i].signum();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, level, smooth};
+    use super::*;
+
+    #[test]
+    fn levels_and_slopes_differ_by_twice_the_half_difference() {
+        let p = [2.0, 30.0];
+        let (forth, back) = (Point::at(0.0, 0.1), Point::at(0.0, -0.1));
+        assert_eq!(level(&Asymmetry, &p, forth) - level(&Asymmetry, &p, back), 4.0);
+        assert_eq!(smooth(&Asymmetry, &p, forth), (3.0, 30.0));
+        assert_eq!(smooth(&Asymmetry, &p, back), (3.0, -30.0));
+    }
+}

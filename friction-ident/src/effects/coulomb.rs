@@ -1,0 +1,43 @@
+//! Coulomb friction: a level that does not depend on speed, with true stick at rest.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot};
+use crate::axis::Quantity;
+
+/// `F_C s`.
+#[derive(Clone, Copy, Debug)]
+pub struct Coulomb;
+
+static ABOUT: About = About {
+    name: "coulomb",
+    title: "Coulomb friction",
+    equation: "F_C s, any force up to F_C at rest",
+    parameters: &[Parameter::level("F_C", "friction level", Quantity::Force, 500.0, 8.0)],
+    slots: &[Slot::FrictionLevel],
+    shows: "a step of the force with the sign of the velocity",
+    reference: "C.-A. de Coulomb, Theorie des machines simples, 1785",
+};
+
+impl Effect for Coulomb {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, _m: &Motion<'_>, level: &mut [f64]) {
+        for (level, coulomb) in level.iter_mut().zip(p.get(0)) {
+            *level += coulomb;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, level};
+    use super::*;
+
+    #[test]
+    fn the_level_is_the_same_at_every_speed() {
+        for velocity in [-1.0, -1e-6, 0.0, 1e-6, 1.0] {
+            assert_eq!(level(&Coulomb, &[4.0], Point::at(0.1, velocity)), 4.0);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+use super::*;
+
+/// 10 s at 1 kHz: a sine of 2 s in counts of 1 µm, a force with Coulomb friction.
+fn recording() -> Recording {
+    from(|k| f64::from(k) * 1e-3, |force| force)
+}
+
+fn from(time: impl Fn(u32) -> f64, force: impl Fn(f64) -> f64) -> Recording {
+    // Half a sample off, so that no sample falls on a change of direction.
+    let phase = |k: u32| std::f64::consts::PI * (f64::from(k) + 0.5) * 1e-3;
+    let times: Vec<f64> = (0..10_000).map(time).collect();
+    let position = (0..10_000).map(|k| (0.05 * phase(k).sin() / 1e-6).round() * 1e-6).collect();
+    let forces = (0..10_000)
+        .map(|k| {
+            let noise = f64::from((k * 7919) % 1000) / 1000.0 - 0.5;
+            force(20.0 * phase(k).cos().signum() + 5.0 * phase(k).cos() + noise)
+        })
+        .collect();
+    let channels =
+        vec![Channel::new("force", "N", forces), Channel::new("position", "m", position)];
+    Recording::new("sine", times, channels).unwrap()
+}
+
+fn says(check: &DataCheck, severity: Severity, part: &str) -> bool {
+    check.findings.iter().any(|f| f.severity == severity && f.text.contains(part))
+}
+
+#[test]
+fn a_good_recording_has_no_warnings() {
+    let check = check(&recording());
+    assert!(check.findings.iter().all(|f| f.severity == Severity::Info), "{:?}", check.findings);
+    assert_eq!((check.samples, check.segments), (10_000, 1));
+    assert!((check.sampling.interval_s - 1e-3).abs() < 1e-9);
+    assert!(check.sampling.jitter < 1e-6);
+    let quantum = check.channel("position").unwrap().quantum.unwrap();
+    assert!((quantum / 1e-6 - 1.0).abs() < 1e-3);
+    assert_eq!(check.channel("force").unwrap().quantum, None);
+}
+
+#[test]
+fn speeds_and_changes_of_direction_are_counted() {
+    let speed = check(&recording()).speed.unwrap();
+    assert!((speed.top / (0.05 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{}", speed.top);
+    assert_eq!(speed.reversals, 10);
+    assert!((speed.forward_share - speed.backward_share).abs() < 0.05);
+}
+
+#[test]
+fn a_repeated_motion_tells_how_well_the_force_repeats() {
+    let cycle = check(&recording()).cycle.unwrap();
+    assert_eq!((cycle.samples, cycle.cycles), (2000, 5));
+    // The noise has a period of 1000 samples: it repeats with the motion.
+    assert!(cycle.force_repeatability.unwrap() < 1e-9);
+}
+
+#[test]
+fn gaps_and_jitter_are_warned_of() {
+    let gap = check(&from(|k| f64::from(k) * 1e-3 + if k > 5000 { 0.5 } else { 0.0 }, |f| f));
+    assert_eq!(gap.sampling.gaps.len(), 1);
+    assert!((gap.sampling.gaps[0].at_s - 5.0).abs() < 1e-9);
+    assert!(says(&gap, Severity::Warning, "a gap"));
+    let shaky = check(&from(|k| (f64::from(k) + 0.4 * f64::from(k % 2)) * 1e-3, |f| f));
+    assert!(says(&shaky, Severity::Warning, "varies by"), "{:?}", shaky.findings);
+}
+
+#[test]
+fn clipping_and_a_dead_channel_are_warned_of() {
+    let clipped = check(&from(|k| f64::from(k) * 1e-3, |force| force.clamp(-22.0, 100.0)));
+    assert!(says(&clipped, Severity::Warning, "held at -22.0 N"), "{:?}", clipped.findings);
+    let dead = check(&from(|k| f64::from(k) * 1e-3, |_| 3.0));
+    assert!(says(&dead, Severity::Serious, "3.00 N in every sample"));
+}
+
+#[test]
+fn a_motion_in_one_direction_is_warned_of() {
+    let time: Vec<f64> = (0..500).map(|k| f64::from(k) * 0.01).collect();
+    let channels = vec![
+        Channel::new("force", "N", time.iter().map(|t| t.sin()).collect()),
+        Channel::new("position", "m", time.clone()),
+    ];
+    let check = check(&Recording::new("ramp", time, channels).unwrap());
+    assert!(says(&check, Severity::Warning, "one direction only"));
+    assert_eq!(check.cycle, None);
+}
+
+#[test]
+fn the_smallest_recording_is_no_problem() {
+    let time: Vec<f64> = (0..16).map(f64::from).collect();
+    let zeros = vec![Channel::new("position", "m", vec![0.0; 16])];
+    let check = check(&Recording::new("rest", time.clone(), zeros).unwrap());
+    assert!(says(&check, Severity::Serious, "position is 0"));
+    // One sample a segment: no interval at all.
+    let alone: Vec<i64> = (0..16).collect();
+    let channels = vec![Channel::new("position", "m", time.clone())];
+    let recording = Recording::with_segments("dots", time, channels, alone).unwrap();
+    assert_eq!(super::check(&recording).sampling.duration_s, 0.0);
+}

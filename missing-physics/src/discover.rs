@@ -1,0 +1,373 @@
+//! The loop: fit, see where it fails, screen, add, refit, until nothing more is gained.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::family::{Fitted, ModelFamily};
+use crate::fit::{self, Fit};
+use crate::ladder::Ladder;
+use crate::report::Discovery;
+use crate::screen::{self, Screened, Screening};
+use crate::split::Split;
+use crate::{search, verdict, where_it_fails};
+
+/// What is asked of a discovery.
+#[derive(Debug)]
+pub struct Settings<'a> {
+    /// Names of the terms of the base model (those of every model need not be named).
+    pub base: Vec<String>,
+    /// Names of terms that are not to be tried.
+    pub exclude: Vec<String>,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Largest p-value at which an effect is added: the false-alarm rate of a screening.
+    pub alpha: f64,
+    /// Smallest share of the held-out squared error that an effect must remove.
+    pub least_gain: f64,
+    /// Most effects that are added.
+    pub most: usize,
+    /// Set from outside to stop; what has been found is reported.
+    pub stop: Option<&'a AtomicBool>,
+    /// Time after which no new rung is begun.
+    pub time_limit: Option<Duration>,
+}
+
+impl Default for Settings<'_> {
+    fn default() -> Self {
+        Self {
+            base: Vec::new(),
+            exclude: Vec::new(),
+            seed: 1,
+            alpha: 0.05,
+            least_gain: 0.02,
+            most: 8,
+            stop: None,
+            time_limit: None,
+        }
+    }
+}
+
+/// What happens, as it happens.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Event<'a> {
+    /// The base model has been fitted.
+    BaseFitted {
+        /// Evaluations of the search.
+        evaluations: usize,
+    },
+    /// Candidates are being screened for this rung, from 1.
+    Screening {
+        /// Number of the rung.
+        rung: usize,
+        /// Number of candidates.
+        candidates: usize,
+    },
+    /// A candidate is being re-identified together with the whole model.
+    Trying {
+        /// Name of the effect.
+        effect: &'a str,
+        /// Share of the held-out squared error it is expected to remove.
+        gain: f64,
+        /// Its p-value.
+        p_value: f64,
+    },
+    /// An effect was added.
+    Added {
+        /// Name of the effect.
+        effect: &'a str,
+        /// Relative error on held-out data before.
+        before: f64,
+        /// Relative error on held-out data after.
+        after: f64,
+    },
+    /// An effect added before is no longer needed.
+    Dropped {
+        /// Name of the effect.
+        effect: &'a str,
+    },
+    /// The loop has ended; the report is being made.
+    Finishing,
+}
+
+/// Someone who watches.
+pub trait Observer {
+    /// Called for every event.
+    fn event(&mut self, event: &Event<'_>);
+}
+
+/// Watches nothing.
+impl Observer for () {
+    fn event(&mut self, _: &Event<'_>) {}
+}
+
+/// Why a discovery cannot begin.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiscoverError {
+    /// A term that the family does not have.
+    #[error("there is no effect '{name}'; there are: {known}")]
+    UnknownTerm {
+        /// The name asked for.
+        name: String,
+        /// Every name there is.
+        known: String,
+    },
+}
+
+/// The indices of terms by name, those of every model first.
+///
+/// # Errors
+/// [`DiscoverError::UnknownTerm`] for a name that the family does not have.
+pub fn terms<F: ModelFamily + ?Sized>(
+    family: &F,
+    names: &[String],
+) -> Result<Vec<usize>, DiscoverError> {
+    let all = family.terms();
+    let mut indices: Vec<usize> = (0..all.len()).filter(|&k| all[k].always).collect();
+    for name in names {
+        let index = all.iter().position(|term| &term.name == name).ok_or_else(|| {
+            let known: Vec<&str> =
+                all.iter().filter(|t| !t.always).map(|t| t.name.as_str()).collect();
+            DiscoverError::UnknownTerm { name: name.clone(), known: known.join(", ") }
+        })?;
+        if !indices.contains(&index) {
+            indices.push(index);
+        }
+    }
+    Ok(indices)
+}
+
+/// Fits the base model, then adds what is missing until nothing is gained on held-out data.
+///
+/// # Errors
+/// When a name in the settings is unknown.
+pub fn discover<F: ModelFamily + ?Sized>(
+    family: &F,
+    settings: &Settings<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Discovery, DiscoverError> {
+    let base = terms(family, &settings.base)?;
+    let excluded = terms(family, &settings.exclude)?;
+    Ok(Search::new(family, settings, &base, excluded, observer).run())
+}
+
+/// Fits `names` on the fitted blocks, screens everything else once and stops: what a model lacks,
+/// without adding it.
+///
+/// # Errors
+/// When a name is unknown.
+pub fn suggest<F: ModelFamily + ?Sized>(
+    family: &F,
+    settings: &Settings<'_>,
+    observer: &mut dyn Observer,
+) -> Result<Discovery, DiscoverError> {
+    let once = Settings {
+        base: settings.base.clone(),
+        exclude: settings.exclude.clone(),
+        most: 0,
+        ..*settings
+    };
+    discover(family, &once, observer)
+}
+
+/// The state of a running discovery.
+struct Search<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    settings: &'a Settings<'a>,
+    observer: &'a mut dyn Observer,
+    started: Instant,
+    split: Split,
+    /// 1 on fitted points, 0 on held-out ones.
+    fitted: Vec<f64>,
+    motion: Vec<Vec<f64>>,
+    excluded: Vec<usize>,
+    fit: Fit,
+    ladder: Ladder<'a, F>,
+}
+
+impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
+    fn new(
+        family: &'a F,
+        settings: &'a Settings<'a>,
+        base: &[usize],
+        excluded: Vec<usize>,
+        observer: &'a mut dyn Observer,
+    ) -> Self {
+        let started = Instant::now();
+        let points = family.target().len();
+        let split = Split::new(points, family.blocks());
+        let fitted: Vec<f64> =
+            split.fit(points).iter().map(|fit| if *fit { 1.0 } else { 0.0 }).collect();
+        let found = search::identify(family, base, &fitted, settings.seed);
+        observer.event(&Event::BaseFitted { evaluations: found.evaluations });
+        let fit = found.fit;
+        let motion = family.motion();
+        let mut ladder = Ladder::new(family, split.clone(), fitted.clone());
+        ladder.push(None, &fit, None);
+        Self { family, settings, observer, started, split, fitted, motion, excluded, fit, ladder }
+    }
+
+    fn run(mut self) -> Discovery {
+        let base = self.fit.clone();
+        let mut last_screening;
+        loop {
+            last_screening = self.screen();
+            self.ladder.rank(&last_screening);
+            if self.ladder.added().len() >= self.settings.most || self.stopped() {
+                break;
+            }
+            let Some((chosen, better)) = self.best_addition(&last_screening) else { break };
+            self.add(&chosen, better);
+            self.drop_idle();
+        }
+        self.observer.event(&Event::Finishing);
+        self.report(&base, &last_screening)
+    }
+
+    fn stopped(&self) -> bool {
+        let asked = self.settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+        asked || self.settings.time_limit.is_some_and(|limit| self.started.elapsed() >= limit)
+    }
+
+    fn screen(&mut self) -> Vec<Screened> {
+        let candidates: Vec<usize> = (0..self.family.terms().len())
+            .filter(|k| !self.fit.model.terms.contains(k) && !self.excluded.contains(k))
+            .collect();
+        let rung = self.ladder.added().len() + 1;
+        self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        screen::screen(
+            self.family,
+            &self.fit,
+            &Screening {
+                candidates: &candidates,
+                weights: &weights,
+                split: &self.split,
+                motion: &self.motion,
+                seed: self.settings.seed.wrapping_add(rung as u64),
+            },
+        )
+    }
+
+    /// The candidate that, re-identified with the whole model, leaves the smallest held-out error.
+    fn best_addition(&mut self, screened: &[Screened]) -> Option<(Screened, Fit)> {
+        let before = self.split.rms(&self.fit.residual).validation;
+        let enough = before * (1.0 - self.settings.least_gain).sqrt();
+        let likely = screened
+            .iter()
+            .filter(|c| c.p_value <= self.settings.alpha && c.gain >= self.settings.least_gain);
+        let mut tried: Vec<(Screened, Fit, f64)> = Vec::new();
+        for candidate in likely.take(MOST_TRIED) {
+            if self.stopped() {
+                break;
+            }
+            self.observer.event(&Event::Trying {
+                effect: &self.family.terms()[candidate.term].name,
+                gain: candidate.gain,
+                p_value: candidate.p_value,
+            });
+            let fit = self.with(candidate);
+            let error = self.split.rms(&fit.residual).validation;
+            if error < enough {
+                tried.push((candidate.clone(), fit, error));
+            }
+        }
+        tried.sort_by(|a, b| a.2.total_cmp(&b.2));
+        let best = tried.first()?.2;
+        let rivals = tried[1..]
+            .iter()
+            .filter(|(_, _, error)| {
+                // What the rival leaves more than the best, as a share of what the best removed.
+                error.powi(2) - best.powi(2) < RIVAL * (before.powi(2) - best.powi(2))
+            })
+            .map(|(candidate, _, _)| candidate.term)
+            .collect();
+        self.ladder.rivals(tried[0].0.term, rivals);
+        let (candidate, fit, _) = tried.swap_remove(0);
+        Some((candidate, fit))
+    }
+
+    fn with(&self, candidate: &Screened) -> Fit {
+        let start =
+            search::shaped(self.family, &self.fit, candidate, &self.fitted, self.settings.seed);
+        fit::refine(self.family, start, &self.fitted)
+    }
+
+    fn add(&mut self, candidate: &Screened, better: Fit) {
+        let before = self.ladder.relative();
+        self.fit = better;
+        self.ladder.push(Some(candidate.term), &self.fit, Some(candidate.p_value));
+        self.observer.event(&Event::Added {
+            effect: &self.family.terms()[candidate.term].name,
+            before,
+            after: self.ladder.relative(),
+        });
+    }
+
+    /// Takes out effects, added earlier, without which the held-out error is as small.
+    fn drop_idle(&mut self) {
+        let added = self.ladder.added();
+        for &term in &added[..added.len().saturating_sub(1)] {
+            let with = self.split.rms(&self.fit.residual).validation;
+            let without =
+                fit::refine(self.family, self.fit.model.without(self.family, term), &self.fitted);
+            let error = self.split.rms(&without.residual).validation;
+            if error.powi(2) * (1.0 - 0.5 * self.settings.least_gain) <= with.powi(2) {
+                self.observer.event(&Event::Dropped { effect: &self.family.terms()[term].name });
+                self.fit = without;
+                self.ladder.drop(term, &self.fit);
+            }
+        }
+    }
+
+    fn report(self, base: &Fit, screened: &[Screened]) -> Discovery {
+        let view = |residual: &[f64]| {
+            where_it_fails::coordinates(
+                self.family,
+                &where_it_fails::View {
+                    residual,
+                    weights: &weights(self.family.doubt(), residual),
+                    motion: &self.motion,
+                    seed: self.settings.seed,
+                },
+            )
+        };
+        let evidence = verdict::Evidence {
+            where_base: view(&base.residual),
+            where_last: view(&self.fit.residual),
+            base,
+            last: &self.fit,
+            screened,
+            alpha: self.settings.alpha,
+            interrupted: self.stopped(),
+        };
+        let mut discovery = verdict::report(self.family, self.ladder, &evidence);
+        discovery.seed = self.settings.seed;
+        discovery.wall_s = self.started.elapsed().as_secs_f64();
+        discovery
+    }
+}
+
+/// Candidates that are re-identified per rung.
+const MOST_TRIED: usize = 4;
+/// A rival leaves at most this share of what the best candidate removed.
+const RIVAL: f64 = 0.05;
+
+/// Weights for screening: a point whose doubt exceeds the usual residual counts accordingly less.
+pub fn weights(doubt: &[f64], residual: &[f64]) -> Vec<f64> {
+    let mut sizes: Vec<f64> = residual.iter().map(|value| value.abs()).collect();
+    let middle = sizes.len() / 2;
+    // Median absolute residual, as a standard deviation.
+    let usual = 1.4826 * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1;
+    doubt
+        .iter()
+        .map(|doubt| if usual > 0.0 { 1.0 / (1.0 + (doubt / usual).powi(2)).sqrt() } else { 1.0 })
+        .collect()
+}
+
+/// A model at given values, evaluated on the whole grid.
+pub fn evaluate<F: ModelFamily + ?Sized>(family: &F, model: Fitted) -> Fit {
+    let weights = vec![1.0; family.target().len()];
+    fit::evaluate(family, model, &weights)
+}

@@ -1,0 +1,171 @@
+//! What the data say in the end, and how sure that is.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use crate::family::{Coordinate, ModelFamily};
+use crate::fit::Fit;
+use crate::ladder::{self, Ladder};
+use crate::noise;
+use crate::report::{Curve, Discovery, Plot, Verdict, Where};
+use crate::screen::Screened;
+use crate::shapes::amplitudes;
+use crate::where_it_fails;
+
+/// A residual that depends on a coordinate with at most this p-value and at least this share of its
+/// square is structure.
+const STRUCTURE: (f64, f64) = (0.005, 0.10);
+/// Structure is called unexplained where the error exceeds the noise floor by this factor.
+const ABOVE_FLOOR: f64 = 1.5;
+
+/// All that the verdict rests on.
+pub struct Evidence<'a> {
+    /// Where the base model fails.
+    pub where_base: Vec<Where>,
+    /// Where the last model fails.
+    pub where_last: Vec<Where>,
+    /// The base model.
+    pub base: &'a Fit,
+    /// The last model.
+    pub last: &'a Fit,
+    /// The last screening.
+    pub screened: &'a [Screened],
+    /// False-alarm rate of a screening.
+    pub alpha: f64,
+    /// True where time ran out or the user stopped it.
+    pub interrupted: bool,
+}
+
+/// The report, but for seed and time.
+pub fn report<F: ModelFamily + ?Sized>(
+    family: &F,
+    ladder: Ladder<'_, F>,
+    evidence: &Evidence<'_>,
+) -> Discovery {
+    let ambiguous = ladder.ambiguous(evidence.screened, evidence.alpha);
+    let (rungs, ranking, added, split) = ladder.into_parts();
+    let quantity = family.quantity();
+    let state: Vec<Coordinate> = family.coordinates().iter().filter(|c| c.state).cloned().collect();
+    let floor = noise::floor(&evidence.last.residual, &state);
+    let mut noise_floor = family.noise();
+    noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+
+    let left = split.rms(&evidence.last.residual).validation;
+    let structure = evidence
+        .where_last
+        .iter()
+        .find(|place| place.p_value <= STRUCTURE.0 && place.share >= STRUCTURE.1)
+        .filter(|_| left > ABOVE_FLOOR * floor);
+    let verdict = match (added.is_empty(), ambiguous.is_empty(), structure) {
+        (false, false, _) => Verdict::Ambiguous,
+        (false, true, _) => Verdict::EffectsFound,
+        (true, _, Some(_)) => Verdict::Unexplained,
+        (true, _, None) => Verdict::NothingMissing,
+    };
+    let relative = |rung: usize| {
+        rungs[rung].error.get(&ladder::relative_key(family)).map_or(0.0, |e| 100.0 * e.validation)
+    };
+    let mut summary = match verdict {
+        Verdict::NothingMissing => format!(
+            "Nothing is missing: the base model leaves {:.2} % of the {}, and no effect of the \
+             library removes more of it than chance does.",
+            relative(0),
+            quantity.name
+        ),
+        Verdict::Unexplained => format!(
+            "The model leaves {:.2} % of the {}, and no effect of the library explains it.",
+            relative(0),
+            quantity.name
+        ),
+        Verdict::EffectsFound | Verdict::Ambiguous => format!(
+            "Missing: {}. With it the held-out error falls from {:.2} % to {:.2} % of the {}.",
+            added.join(", "),
+            relative(0),
+            relative(rungs.len() - 1),
+            quantity.name
+        ),
+    };
+    if let Some(place) = structure {
+        let _ = write!(
+            summary,
+            " What remains still depends on {} ({:.0} % of it; {}).",
+            place.coordinate,
+            100.0 * place.share,
+            place.note
+        );
+    }
+    for choice in &ambiguous {
+        let _ = write!(
+            summary,
+            " This data cannot tell {} apart: {}",
+            choice.effects.join(" from "),
+            choice.experiment
+        );
+    }
+    let mut notes = Vec::new();
+    if evidence.interrupted {
+        notes.push("Stopped before the end: further effects were not looked for.".to_owned());
+    }
+    Discovery {
+        verdict,
+        summary,
+        added,
+        ladder: rungs,
+        ranking,
+        where_it_fails: evidence.where_last.clone(),
+        where_base: evidence.where_base.clone(),
+        regimes: where_it_fails::regimes(family, &evidence.last.residual),
+        regimes_base: where_it_fails::regimes(family, &evidence.base.residual),
+        ambiguous,
+        noise_floor,
+        detection_limits: limits(family, evidence),
+        seed: 0,
+        wall_s: 0.0,
+        notes,
+        plots: plots(family, evidence),
+    }
+}
+
+/// The size of every effect not in the model at which it would have been found: that which removes
+/// as large a share of the error as the largest 5 % of placebos.
+fn limits<F: ModelFamily + ?Sized>(
+    family: &F,
+    evidence: &Evidence<'_>,
+) -> BTreeMap<String, String> {
+    let square: f64 = evidence.last.residual.iter().map(|r| r * r).sum();
+    evidence
+        .screened
+        .iter()
+        .filter(|candidate| candidate.p_value > evidence.alpha && candidate.leverage > 0.0)
+        .filter_map(|candidate| {
+            let term = &family.terms()[candidate.term];
+            let amplitude = amplitudes(term).first().copied()?;
+            let size = (candidate.needed.max(0.0) * square / candidate.leverage).sqrt();
+            let words = format!("{} {size:.3} {}", amplitude.name, amplitude.unit);
+            Some((term.name.clone(), words))
+        })
+        .collect()
+}
+
+/// The residual of base and last model along the coordinates on which the base model fails most,
+/// and the family's own curves.
+fn plots<F: ModelFamily + ?Sized>(family: &F, evidence: &Evidence<'_>) -> Vec<Plot> {
+    let quantity = family.quantity();
+    let mut plots = family.plots(&evidence.base.model, &evidence.last.model);
+    for place in evidence.where_base.iter().take(4) {
+        let found = family.coordinates().iter().find(|c| c.name == place.coordinate);
+        let Some(coordinate) = found else { continue };
+        let curve = |label: &str, fit: &Fit| {
+            let (x, y) = where_it_fails::profile(coordinate, &fit.residual);
+            Curve { label: label.to_owned(), x, y }
+        };
+        let opposes = if coordinate.parity.is_some() { ", against the motion" } else { "" };
+        plots.push(Plot {
+            title: format!("Mean residual along {}", coordinate.name),
+            x_label: format!("{} / {}", coordinate.name, coordinate.unit),
+            y_label: format!("{} residual{opposes} / {}", quantity.name, quantity.unit),
+            curves: vec![curve("base model", evidence.base), curve("last model", evidence.last)],
+        });
+    }
+    plots
+}

@@ -1,0 +1,179 @@
+//! Where the model fails: the coordinates that the residual depends on, and the regimes that hold
+//! the error.
+
+use rayon::prelude::*;
+
+use crate::family::{Coordinate, ModelFamily};
+use crate::placebo;
+use crate::report::{RegimeShare, Where};
+
+/// Bins along a coordinate, each with the same number of points.
+const BINS: usize = 20;
+/// Number of rearranged residuals.
+const PLACEBOS: usize = 199;
+
+/// Where in the recording the residual is looked at.
+pub struct View<'a> {
+    /// Target minus prediction.
+    pub residual: &'a [f64],
+    /// Weight of each point.
+    pub weights: &'a [f64],
+    /// Signals whose self-similarity makes a shift useless as a placebo.
+    pub motion: &'a [Vec<f64>],
+    /// Seed of the placebos.
+    pub seed: u64,
+}
+
+/// For every coordinate: the share of the squared error that a function of this coordinate alone
+/// would remove (a step for each of 20 bins, adjusted for their number), the chance of as much by
+/// accident, and where along the coordinate it is worst. Largest share first.
+pub fn coordinates<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where> {
+    let orders = placebo::rearrangements(view.residual.len(), PLACEBOS, view.motion, view.seed);
+    let unit = family.quantity().unit;
+    let mut found: Vec<Where> = family
+        .coordinates()
+        .par_iter()
+        .map(|coordinate| {
+            let bins = Bins::new(&coordinate.values);
+            let seen = parity(coordinate, view.residual, view.weights);
+            let share = bins.explained(&seen);
+            let placebos: Vec<f64> = orders
+                .iter()
+                .map(|order| {
+                    let moved: Vec<f64> = order.iter().map(|&k| view.residual[k]).collect();
+                    let weights: Vec<f64> = order.iter().map(|&k| view.weights[k]).collect();
+                    bins.explained(&parity(coordinate, &moved, &weights))
+                })
+                .collect();
+            let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
+            Where {
+                coordinate: coordinate.name.clone(),
+                share,
+                p_value: placebo::p_value(share, &placebos),
+                note: bins.worst(coordinate, &plain, &unit),
+            }
+        })
+        .collect();
+    found.sort_by(|a, b| b.share.total_cmp(&a.share));
+    found
+}
+
+/// Share of the squared error and of the time in every regime; both sum to one.
+pub fn regimes<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> Vec<RegimeShare> {
+    let total: f64 = residual.iter().map(|r| r * r).sum::<f64>().max(f64::MIN_POSITIVE);
+    let mut shares: Vec<RegimeShare> = family
+        .regimes()
+        .iter()
+        .map(|regime| {
+            let inside = residual.iter().zip(&regime.member).filter(|(_, member)| **member);
+            let (count, square) =
+                inside.fold((0usize, 0.0), |(count, sum), (r, _)| (count + 1, sum + r * r));
+            RegimeShare {
+                regime: regime.name.clone(),
+                share: square / total,
+                time_share: count as f64 / residual.len() as f64,
+                rms: (square / count.max(1) as f64).sqrt(),
+            }
+        })
+        .collect();
+    shares.sort_by(|a, b| b.share.total_cmp(&a.share));
+    shares
+}
+
+/// The curve of the mean residual over the bins of a coordinate, for plots.
+pub fn profile(coordinate: &Coordinate, residual: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let bins = Bins::new(&coordinate.values);
+    let seen = parity(coordinate, residual, &vec![1.0; residual.len()]);
+    let means = bins.means(&seen);
+    let at = bins.means(&coordinate.values);
+    (at, means)
+}
+
+fn parity(coordinate: &Coordinate, residual: &[f64], weights: &[f64]) -> Vec<f64> {
+    let weighted = residual.iter().zip(weights).map(|(r, w)| r * w);
+    match &coordinate.parity {
+        None => weighted.collect(),
+        Some(parity) => weighted.zip(parity).map(|(r, s)| r * s).collect(),
+    }
+}
+
+/// Points grouped by the rank of a coordinate.
+struct Bins {
+    of: Vec<usize>,
+    count: Vec<f64>,
+}
+
+impl Bins {
+    fn new(values: &[f64]) -> Self {
+        let mut order: Vec<usize> = (0..values.len()).collect();
+        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+        let (mut of, mut count) = (vec![0; values.len()], vec![0.0; BINS]);
+        let mut bin = 0;
+        for (rank, &index) in order.iter().enumerate() {
+            let wanted = rank * BINS / values.len();
+            // Equal values stay together.
+            let same = rank > 0 && values[order[rank - 1]] == values[index];
+            if wanted > bin && !same {
+                bin = wanted;
+            }
+            of[index] = bin;
+            count[bin] += 1.0;
+        }
+        Self { of, count }
+    }
+
+    fn means(&self, values: &[f64]) -> Vec<f64> {
+        let mut sums = [0.0; BINS];
+        values.iter().zip(&self.of).for_each(|(value, bin)| sums[*bin] += value);
+        sums.iter().zip(&self.count).map(|(sum, count)| sum / count.max(1.0)).collect()
+    }
+
+    /// Adjusted share of the sum of squares that lies between bins, the overall mean included: a
+    /// residual that is off everywhere by the same amount depends on nothing.
+    fn explained(&self, values: &[f64]) -> f64 {
+        let points = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / points;
+        let total: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let used = self.count.iter().filter(|count| **count > 0.0).count() as f64;
+        if total <= 0.0 || points <= used {
+            return 0.0;
+        }
+        let between: f64 = self
+            .means(values)
+            .iter()
+            .zip(&self.count)
+            .map(|(bin, count)| count * (bin - mean).powi(2))
+            .sum();
+        let adjusted = 1.0 - (1.0 - between / total) * (points - 1.0) / (points - used);
+        adjusted.max(0.0)
+    }
+
+    fn worst(&self, coordinate: &Coordinate, values: &[f64], unit: &str) -> String {
+        let means = self.means(values);
+        let at = self.means(&coordinate.values);
+        let worst = (0..BINS)
+            .filter(|&bin| self.count[bin] > 0.0)
+            .max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()));
+        let Some(bin) = worst else { return String::new() };
+        let opposes = if coordinate.parity.is_some() { " against the motion" } else { "" };
+        format!(
+            "largest mean error {:+.3} {unit}{opposes} near {:.4} {}",
+            means[bin], at[bin], coordinate.unit
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_residual_that_follows_a_coordinate_is_explained_by_it() {
+        let values: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 0.37).sin()).collect();
+        let bins = Bins::new(&values);
+        let follows: Vec<f64> = values.iter().map(|v| v * v).collect();
+        let other: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 1.913).sin()).collect();
+        assert!(bins.explained(&follows) > 0.9);
+        assert!(bins.explained(&other) < 0.1);
+    }
+}
