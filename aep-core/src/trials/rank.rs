@@ -73,7 +73,7 @@ mod tests {
         values.iter().map(|v| Merit::new(None, *v)).collect()
     }
 
-    /// Against SciPy 1.17: `mannwhitneyu(first, second, method="asymptotic")` gives U = 3,
+    /// Against `SciPy` 1.17: `mannwhitneyu(first, second, method="asymptotic")` gives U = 3,
     /// p = 0.060102806.
     #[test]
     fn p_value_and_effect_match_a_reference() {
