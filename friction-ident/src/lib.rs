@@ -18,6 +18,7 @@
 pub mod axis;
 pub mod driven;
 pub mod effects;
+pub mod family;
 pub mod model;
 
 mod signal;

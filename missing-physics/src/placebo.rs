@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn every_residual_stands_somewhere_exactly_once() {
-        let periodic: Vec<f64> = (0..500).map(|k| (k as f64 * 0.3).sin()).collect();
+        let periodic: Vec<f64> = (0..500).map(|k| (f64::from(k) * 0.3).sin()).collect();
         for motion in [vec![], vec![periodic]] {
             for order in rearrangements(500, 20, &motion, 3) {
                 let mut sorted = order.clone();

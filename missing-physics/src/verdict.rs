@@ -1,6 +1,7 @@
 //! What the data say in the end, and how sure that is.
 
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 use crate::family::{Coordinate, ModelFamily};
 use crate::fit::Fit;
@@ -85,7 +86,8 @@ pub fn report<F: ModelFamily + ?Sized>(
         ),
     };
     if let Some(place) = structure {
-        summary += &format!(
+        let _ = write!(
+            summary,
             " What remains still depends on {} ({:.0} % of it; {}).",
             place.coordinate,
             100.0 * place.share,
@@ -93,7 +95,8 @@ pub fn report<F: ModelFamily + ?Sized>(
         );
     }
     for choice in &ambiguous {
-        summary += &format!(
+        let _ = write!(
+            summary,
             " This data cannot tell {} apart: {}",
             choice.effects.join(" from "),
             choice.experiment

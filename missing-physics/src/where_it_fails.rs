@@ -123,7 +123,7 @@ impl Bins {
     }
 
     fn means(&self, values: &[f64]) -> Vec<f64> {
-        let mut sums = vec![0.0; BINS];
+        let mut sums = [0.0; BINS];
         values.iter().zip(&self.of).for_each(|(value, bin)| sums[*bin] += value);
         sums.iter().zip(&self.count).map(|(sum, count)| sum / count.max(1.0)).collect()
     }
@@ -169,10 +169,10 @@ mod tests {
 
     #[test]
     fn a_residual_that_follows_a_coordinate_is_explained_by_it() {
-        let values: Vec<f64> = (0..1000).map(|k| (k as f64 * 0.37).sin()).collect();
+        let values: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 0.37).sin()).collect();
         let bins = Bins::new(&values);
         let follows: Vec<f64> = values.iter().map(|v| v * v).collect();
-        let other: Vec<f64> = (0..1000).map(|k| (k as f64 * 1.913).sin()).collect();
+        let other: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 1.913).sin()).collect();
         assert!(bins.explained(&follows) > 0.9);
         assert!(bins.explained(&other) < 0.1);
     }

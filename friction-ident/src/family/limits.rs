@@ -1,0 +1,164 @@
+//! Bounds, starts and trial values of parameters, from what the recording can show.
+
+use aep_core::Scale;
+use missing_physics::{Parameter, Role, Term};
+
+use super::preparation::Prepared;
+use crate::axis::{Axis, Quantity};
+use crate::effects::{self, About};
+
+/// Most trial periods of a ripple.
+const MOST_PERIODS: usize = 320;
+
+/// Sizes of the recording.
+pub struct Limits {
+    axis: Axis,
+    interval: f64,
+    force: Size,
+    speed: Size,
+    acceleration: Size,
+    stroke: f64,
+    rest_speed: f64,
+    position_noise: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Size {
+    rms: f64,
+    most: f64,
+}
+
+impl Size {
+    fn of(values: &[f64]) -> Self {
+        let square: f64 = values.iter().map(|value| value * value).sum();
+        Self {
+            rms: (square / values.len().max(1) as f64).sqrt().max(f64::MIN_POSITIVE),
+            most: values.iter().fold(f64::MIN_POSITIVE, |most, value| most.max(value.abs())),
+        }
+    }
+}
+
+impl Limits {
+    pub fn of(prepared: &Prepared, axis: Axis, stroke: (f64, f64)) -> Self {
+        Self {
+            axis,
+            interval: prepared.interval,
+            force: Size::of(&prepared.force),
+            speed: Size::of(&prepared.velocity),
+            acceleration: Size::of(&prepared.acceleration),
+            stroke: (stroke.1 - stroke.0).max(f64::MIN_POSITIVE),
+            rest_speed: prepared.rest_speed,
+            position_noise: prepared.position_noise,
+        }
+    }
+
+    /// The mass: part of every model.
+    pub fn mass(&self) -> Term {
+        let typical = self.force.rms / self.acceleration.rms;
+        let parameter = Parameter {
+            name: "mass".into(),
+            unit: self.axis.unit(Quantity::Mass).into(),
+            role: Role::Amplitude,
+            lower: 1e-6 * typical,
+            upper: 20.0 * typical,
+            scale: Scale::Linear,
+            start: 0.5 * typical,
+        };
+        Term {
+            name: "mass".into(),
+            title: "inertia".into(),
+            equation: "m a".into(),
+            parameters: vec![parameter],
+            always: true,
+        }
+    }
+
+    /// An effect as a term; parameters that are not fitted are left out.
+    pub fn term(&self, about: &About) -> Term {
+        let fitted = about.parameters.iter().filter(|p| p.role != effects::Role::Fixed);
+        Term {
+            name: about.name.into(),
+            title: about.title.into(),
+            equation: about.equation.into(),
+            parameters: fitted.map(|parameter| self.parameter(parameter)).collect(),
+            always: false,
+        }
+    }
+
+    fn parameter(&self, parameter: &effects::Parameter) -> Parameter {
+        let amplitude = parameter.role == effects::Role::Amplitude;
+        let (lower, upper, start) =
+            if amplitude { self.amplitude(parameter) } else { self.shape(parameter) };
+        Parameter {
+            name: parameter.name.into(),
+            unit: self.axis.unit(parameter.quantity).into(),
+            role: if amplitude { Role::Amplitude } else { Role::Shape },
+            lower,
+            upper,
+            scale: match parameter.scale {
+                effects::Scale::Linear => Scale::Linear,
+                effects::Scale::Log => Scale::Log,
+            },
+            start,
+        }
+    }
+
+    /// An amplitude that could make up twice the whole force; it starts at a tenth of the force.
+    fn amplitude(&self, parameter: &effects::Parameter) -> (f64, f64, f64) {
+        let per = match parameter.quantity {
+            Quantity::Damping => self.speed,
+            Quantity::Drag => Size {
+                rms: self.speed.rms * self.speed.rms,
+                most: self.speed.most * self.speed.rms,
+            },
+            Quantity::Stiffness => Size { rms: self.stroke, most: self.stroke },
+            Quantity::Mass => self.acceleration,
+            Quantity::Force => Size { rms: 1.0, most: 1.0 },
+            _ => {
+                let (low, high) = parameter.range(self.axis);
+                return (low, high, parameter.typical(self.axis));
+            }
+        };
+        let upper = 2.0 * self.force.most / per.rms;
+        let lower = if parameter.low < 0.0 { -upper } else { 0.0 };
+        (lower, upper, 0.1 * self.force.rms / per.rms)
+    }
+
+    /// A shape within what the motion covers; never empty.
+    fn shape(&self, parameter: &effects::Parameter) -> (f64, f64, f64) {
+        let (low, high) = parameter.range(self.axis);
+        let (from, to) = match parameter.quantity {
+            Quantity::Velocity => (0.5 * self.rest_speed, 0.5 * self.speed.most),
+            Quantity::Length => (4.0 * self.position_noise, self.stroke),
+            Quantity::Stiffness => (
+                0.05 * self.force.rms / (0.1 * self.stroke),
+                self.force.rms / self.position_noise.max(1e-6 * self.stroke),
+            ),
+            Quantity::Time => (0.05 * self.interval, f64::INFINITY),
+            _ => (low, high),
+        };
+        let linear = parameter.scale == effects::Scale::Linear;
+        let lower = if linear { low } else { from.max(low.min(to)) };
+        let upper = to.min(high).max(lower * 1.01);
+        let middle = if linear { 0.5 * (lower + upper) } else { (lower * upper).sqrt() };
+        let typical = parameter.typical(self.axis);
+        let start = if (lower..=upper).contains(&typical) { typical } else { middle };
+        (lower, upper, start)
+    }
+}
+
+/// Trial periods of a ripple, the shortest first: evenly in spatial frequency, half a line width
+/// apart, up to the frequency that passes the comparison's bandwidth at low speed.
+pub fn periods(prepared: &Prepared, stroke: (f64, f64)) -> Vec<f64> {
+    let length = stroke.1 - stroke.0;
+    let mut speeds: Vec<f64> = prepared.grid.iter().map(|&k| prepared.velocity[k].abs()).collect();
+    let quarter = speeds.len() / 4;
+    let slow = *speeds.select_nth_unstable_by(quarter, f64::total_cmp).1;
+    let highest = prepared.bandwidth / slow.max(prepared.rest_speed);
+    let lowest = 1.5 / length;
+    let count = ((2.0 * (highest - lowest) * length) as usize).clamp(2, MOST_PERIODS);
+    (0..count)
+        .rev()
+        .map(|k| 1.0 / (lowest + (highest - lowest).max(lowest) * k as f64 / (count - 1) as f64))
+        .collect()
+}

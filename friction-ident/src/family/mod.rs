@@ -1,0 +1,321 @@
+//! A recording of a drive as a [`ModelFamily`]: the force that a model requires along the measured
+//! motion, compared with the force that was recorded.
+//!
+//! Every effect of the library is a candidate term; the mass is part of every model.
+
+mod coordinates;
+mod filter;
+mod limits;
+mod plots;
+mod preparation;
+mod words;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use missing_physics::basis::{dot, gram, solve};
+use missing_physics::report::Plot;
+use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
+
+pub use preparation::{PreparationError, Prepared};
+pub use words::engineering;
+
+use crate::axis::Axis;
+use crate::driven::{MeasuredMotion, columns_along, force_along};
+use crate::effects::{Effect, Library, Role, Slot};
+use crate::model::{MASS, Model, ModelError, address};
+
+/// What can be chosen.
+#[derive(Clone, Default)]
+pub struct Options {
+    /// Bandwidth of the comparison, Hz; by default 4 % of the sampling frequency.
+    pub bandwidth: Option<f64>,
+    /// Effects that may be in a model.
+    pub library: Library,
+}
+
+/// See the module.
+pub struct FrictionFamily {
+    prepared: Prepared,
+    axis: Axis,
+    effects: Vec<&'static dyn Effect>,
+    terms: Vec<Term>,
+    time: Vec<f64>,
+    target: Vec<f64>,
+    doubt: Vec<f64>,
+    coordinates: Vec<Coordinate>,
+    regimes: Vec<Regime>,
+    motion: Vec<Vec<f64>>,
+    blocks: Vec<Range<usize>>,
+    stroke: (f64, f64),
+}
+
+impl FrictionFamily {
+    /// Prepares a recording with channels `force` and `position`.
+    ///
+    /// # Errors
+    /// A channel is missing or constant, or too little of the recording moves.
+    pub fn new(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
+        let prepared = Prepared::new(recording, options.bandwidth)?;
+        let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
+        let axis = if rotary { Axis::Rotary } else { Axis::Linear };
+        let stroke = prepared
+            .position
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
+        let effects = options.library.effects().to_vec();
+        let limits = limits::Limits::of(&prepared, axis, stroke);
+        let mut terms = vec![limits.mass()];
+        terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
+        let coordinates = coordinates::coordinates(&prepared, axis, recording);
+        let regimes = coordinates::regimes(&prepared);
+        let mut family = Self {
+            axis,
+            effects,
+            terms,
+            time: prepared.sample(&prepared.time),
+            target: prepared.compare(&prepared.force),
+            doubt: Vec::new(),
+            coordinates,
+            regimes,
+            motion: coordinates::motion(&prepared),
+            blocks: coordinates::cycles(&prepared),
+            stroke,
+            prepared,
+        };
+        family.doubt = family.disagreement();
+        Ok(family)
+    }
+
+    /// Linear or rotary.
+    pub fn axis(&self) -> Axis {
+        self.axis
+    }
+
+    /// The prepared motion and force.
+    pub fn prepared(&self) -> &Prepared {
+        &self.prepared
+    }
+
+    /// A fitted model as a plant.
+    ///
+    /// # Errors
+    /// The terms do not fit together.
+    pub fn model(&self, fitted: &Fitted) -> Result<Model, ModelError> {
+        let mut mass = 1.0;
+        let mut effects = Vec::new();
+        for (position, &index) in fitted.terms.iter().enumerate() {
+            let values = &fitted.values[fitted.range(self, position)];
+            match index {
+                0 => mass = values[0],
+                _ => effects.push((self.effects[index - 1], values)),
+            }
+        }
+        let mut model = Model::new(self.axis, mass)?;
+        for (effect, values) in effects {
+            model = model.with_effect(effect)?;
+            let mut values = values.iter();
+            for parameter in effect.about().parameters {
+                let value = match parameter.role {
+                    Role::Fixed => self.fixed(parameter.name),
+                    _ => values.next().copied(),
+                };
+                if let Some(value) = value {
+                    model.set(&address(effect, parameter.name), value)?;
+                }
+            }
+        }
+        Ok(model)
+    }
+
+    /// A plant as values of this family's terms.
+    ///
+    /// # Errors
+    /// An effect of the plant is not in the family's library.
+    pub fn fitted(&self, model: &Model) -> Result<Fitted, ModelError> {
+        let mut fitted = Fitted { terms: vec![0], values: vec![model.mass()] };
+        for term in model.terms() {
+            let found = self.effects.iter().position(|e| e.about().name == term.name());
+            let Some(index) = found else {
+                return Err(Library::builtin().find(term.name()).err().map_or_else(
+                    || ModelError::Syntax(format!("effect '{}' cannot be compared", term.name())),
+                    ModelError::from,
+                ));
+            };
+            fitted.terms.push(index + 1);
+            let parameters = term.effect().about().parameters.iter().zip(term.values());
+            fitted
+                .values
+                .extend(parameters.filter(|(p, _)| p.role != Role::Fixed).map(|(_, value)| *value));
+        }
+        Ok(fitted)
+    }
+
+    /// Parameters that are not fitted: the stroke is that of the recording.
+    fn fixed(&self, name: &str) -> Option<f64> {
+        match name {
+            "start" => Some(self.stroke.0),
+            "end" => Some(self.stroke.1),
+            _ => None,
+        }
+    }
+
+    fn driven<R>(&self, run: impl FnOnce(&MeasuredMotion<'_>) -> R) -> R {
+        let p = &self.prepared;
+        self.driven_by(&p.velocity, &p.acceleration, run)
+    }
+
+    fn driven_by<R>(
+        &self,
+        velocity: &[f64],
+        acceleration: &[f64],
+        run: impl FnOnce(&MeasuredMotion<'_>) -> R,
+    ) -> R {
+        let p = &self.prepared;
+        let motion = MeasuredMotion::new(&p.time, &p.position, velocity, acceleration)
+            .and_then(|motion| motion.with_segments(&p.segments))
+            .and_then(|motion| motion.with_drive_force(&p.force));
+        match motion {
+            Ok(motion) => run(&motion),
+            Err(_) => unreachable!("channels of a prepared recording have one length"),
+        }
+    }
+
+    /// How far the prediction of a simple model moves when the motion is smoothed more heavily:
+    /// around reversals and impacts, where the smoother matters, much; elsewhere hardly.
+    fn disagreement(&self) -> Vec<f64> {
+        let p = &self.prepared;
+        let signs =
+            |velocity: &[f64]| -> Vec<f64> { velocity.iter().map(|v| v.signum()).collect() };
+        let columns = |velocity: &[f64], acceleration: &[f64]| {
+            [acceleration, velocity, &signs(velocity), &vec![1.0; velocity.len()]]
+                .map(|column| p.compare(column))
+                .to_vec()
+        };
+        let light = columns(&p.velocity, &p.acceleration);
+        let heavy = columns(&p.heavier.0, &p.heavier.1);
+        let moment: Vec<f64> = light.iter().map(|column| dot(column, &self.target)).collect();
+        let simple = solve(&gram(&light), &moment, &[0, 1, 2, 3]);
+        let mut difference = vec![0.0; self.target.len()];
+        for (k, factor) in simple.iter().enumerate() {
+            for (value, (a, b)) in difference.iter_mut().zip(light[k].iter().zip(&heavy[k])) {
+                *value += factor * (a - b);
+            }
+        }
+        (0..difference.len())
+            .map(|k| {
+                let near = k.saturating_sub(1)..(k + 2).min(difference.len());
+                difference[near].iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+            })
+            .collect()
+    }
+
+    fn is_simple(&self, term: usize) -> bool {
+        term > 0 && {
+            let about = self.effects[term - 1].about();
+            about.slots.iter().all(|slot| matches!(slot, Slot::SmoothForce | Slot::FrictionLevel))
+        }
+    }
+}
+
+impl ModelFamily for FrictionFamily {
+    fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    fn quantity(&self) -> Quantity {
+        match self.axis {
+            Axis::Linear => Quantity { name: "force".into(), unit: "N".into() },
+            Axis::Rotary => Quantity { name: "torque".into(), unit: "Nm".into() },
+        }
+    }
+
+    fn time(&self) -> &[f64] {
+        &self.time
+    }
+
+    fn target(&self) -> &[f64] {
+        &self.target
+    }
+
+    fn doubt(&self) -> &[f64] {
+        &self.doubt
+    }
+
+    fn predict(&self, fitted: &Fitted, out: &mut [f64]) {
+        // A combination that is no plant predicts nothing; it then loses against every other.
+        let Ok(model) = self.model(fitted) else { return out.fill(0.0) };
+        let force = self.driven(|motion| force_along(&model, motion));
+        out.copy_from_slice(&self.prepared.compare(&force));
+    }
+
+    fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
+        if self.terms[term].name == "ripple" {
+            return limits::periods(&self.prepared, self.stroke)
+                .into_iter()
+                .map(|period| vec![period])
+                .collect();
+        }
+        missing_physics::shapes::grid(&self.terms[term])
+    }
+
+    fn columns(
+        &self,
+        model: &Fitted,
+        prediction: &[f64],
+        term: usize,
+        shape: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let simple = model.terms.iter().skip(1).chain([&term]).all(|&term| self.is_simple(term));
+        let about = &self.terms[term];
+        let values = missing_physics::shapes::assemble(about, shape, &[]);
+        let alone = Fitted { terms: vec![0], values: vec![1.0] }.with(term, &values);
+        // Without contact and drive in play a term's columns do not depend on the rest.
+        match self.model(&alone) {
+            Ok(plant) if simple => {
+                let split = self.driven(|motion| columns_along(&plant, motion));
+                split
+                    .addresses
+                    .iter()
+                    .zip(&split.columns)
+                    .filter(|(address, _)| *address != MASS)
+                    .map(|(_, column)| self.prepared.compare(column))
+                    .collect()
+            }
+            _ => missing_physics::shapes::columns(self, model, prediction, term, shape),
+        }
+    }
+
+    fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+
+    fn regimes(&self) -> &[Regime] {
+        &self.regimes
+    }
+
+    fn motion(&self) -> Vec<Vec<f64>> {
+        self.motion.clone()
+    }
+
+    fn blocks(&self) -> Vec<Range<usize>> {
+        self.blocks.clone()
+    }
+
+    fn noise(&self) -> BTreeMap<String, f64> {
+        let unit = if self.axis == Axis::Rotary { "angle_rad" } else { "position_m" };
+        BTreeMap::from([(unit.to_owned(), self.prepared.position_noise)])
+    }
+
+    fn describe(&self, term: usize, values: &[f64]) -> String {
+        words::describe(&self.terms[term], values)
+    }
+
+    fn experiment(&self, terms: &[String]) -> String {
+        words::experiment(terms)
+    }
+
+    fn plots(&self, base: &Fitted, last: &Fitted) -> Vec<Plot> {
+        plots::plots(self, base, last)
+    }
+}

@@ -1,0 +1,345 @@
+//! From a recording to the motion and force that models are compared on.
+//!
+//! Position is smoothed without phase shift and differentiated; force and every regressor then pass
+//! the same low-pass filter ("parallel filtering"), so that what the filter does to the one it does
+//! to the other. Samples at rest say nothing of the friction level (any force below breakaway holds)
+//! and are set to zero on both sides before that filter, which keeps the equation true.
+
+use std::ops::Range;
+
+use missing_physics::{Hold, Recording, RecordingError};
+
+use super::filter::LowPass;
+
+/// Cut-off of the position's smoother as a share of the sampling frequency.
+const SMOOTHER: f64 = 0.1;
+/// A second, heavier smoother: where the two disagree, the motion is in doubt.
+const HEAVIER: f64 = 0.06;
+/// Default bandwidth of the comparison as a share of the sampling frequency.
+const BANDWIDTH: f64 = 0.04;
+/// Grid points per period of the bandwidth.
+const GRID: f64 = 2.5;
+/// Most grid points; a longer recording is thinned out.
+const MOST_POINTS: usize = 8000;
+/// Speed below which the axis is taken to rest, in standard deviations of the velocity's noise.
+const REST: f64 = 3.0;
+/// The same as a share of the root mean square speed: ringing of the smoother after a stop.
+const RINGING: f64 = 1e-3;
+/// A grid point is used where at least this share of its neighbourhood moves.
+const MOVING: f64 = 0.3;
+
+/// Why a recording cannot be compared with a drive.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PreparationError {
+    /// A channel is missing.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// Too little is left to compare.
+    #[error(
+        "only {points} of the recording's instants can be compared, {needed} are needed: it is too \
+         short, or the axis hardly moves"
+    )]
+    TooLittle {
+        /// Usable grid points.
+        points: usize,
+        /// Grid points needed.
+        needed: usize,
+    },
+    /// The force or the position is constant.
+    #[error("'{channel}' never changes: nothing can be learned from it")]
+    Constant {
+        /// Which channel.
+        channel: &'static str,
+    },
+}
+
+/// Fewest grid points of a comparison.
+const LEAST_POINTS: usize = 60;
+
+/// Motion and force, uniformly sampled in every segment.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// Sampling interval, s.
+    pub interval: f64,
+    /// Times, s.
+    pub time: Vec<f64>,
+    /// Smoothed position, m or rad.
+    pub position: Vec<f64>,
+    /// Velocity, m/s or rad/s.
+    pub velocity: Vec<f64>,
+    /// Acceleration, m/s^2 or rad/s^2.
+    pub acceleration: Vec<f64>,
+    /// Force or torque at the instants of the samples, N or N m.
+    pub force: Vec<f64>,
+    /// Contiguous pieces.
+    pub segments: Vec<Range<usize>>,
+    /// 1 where the axis moves, 0 where it rests.
+    pub moving: Vec<f64>,
+    /// Samples of the comparison grid.
+    pub grid: Vec<usize>,
+    /// Bandwidth of the comparison, Hz.
+    pub bandwidth: f64,
+    /// Standard deviation of what the smoother took out of the position: its noise, m or rad.
+    pub position_noise: f64,
+    /// Speed below which the axis is taken to rest, m/s or rad/s.
+    pub rest_speed: f64,
+    /// Velocity and acceleration by the heavier smoother.
+    pub heavier: (Vec<f64>, Vec<f64>),
+    low_pass: LowPass,
+}
+
+impl Prepared {
+    /// Prepares `recording`; `bandwidth` in Hz, by default 4 % of the sampling frequency.
+    ///
+    /// # Errors
+    /// A channel is missing or constant, or too little of the recording moves.
+    pub fn new(recording: &Recording, bandwidth: Option<f64>) -> Result<Self, PreparationError> {
+        let force = recording.require("force")?;
+        let position = recording.require("position")?;
+        for (channel, values) in [("force", force), ("position", position)] {
+            if values.iter().all(|value| *value == values[0]) {
+                return Err(PreparationError::Constant { channel });
+            }
+        }
+        let interval = recording.interval();
+        let mut raw = Raw::default();
+        for range in recording.segments() {
+            raw.resample(
+                &recording.time()[range.clone()],
+                &position[range.clone()],
+                &force[range.clone()],
+                interval,
+                recording.hold(),
+            );
+        }
+        let relative = bandwidth.map_or(BANDWIDTH, |hz| hz * interval).min(0.2);
+        Self::from_raw(raw, interval, relative, recording.hold())
+    }
+
+    fn from_raw(
+        raw: Raw,
+        interval: f64,
+        relative: f64,
+        hold: Hold,
+    ) -> Result<Self, PreparationError> {
+        let smoother = SMOOTHER.max(1.5 * relative);
+        let light = raw.motion(&LowPass::new(smoother), interval, hold);
+        let heavy = raw.motion(&LowPass::new(smoother * HEAVIER / SMOOTHER), interval, hold);
+        let residue: Vec<f64> =
+            raw.position.iter().zip(&light.position).map(|(a, b)| a - b).collect();
+        let position_noise = rms(&residue);
+        // White noise of this size, low-passed at f and differentiated: rms 2 pi f sqrt(2 f / 3 fs).
+        let cutoff = std::f64::consts::TAU * smoother / interval;
+        let velocity_noise = position_noise * cutoff * (2.0 * smoother / 3.0).sqrt();
+        let rest_speed = (REST * velocity_noise).max(RINGING * rms(&light.velocity));
+        let moving: Vec<f64> =
+            light.velocity.iter().map(|v| f64::from(u8::from(v.abs() > rest_speed))).collect();
+        let low_pass = LowPass::new(relative);
+        let mut prepared = Self {
+            interval,
+            time: raw.time,
+            position: light.position,
+            velocity: light.velocity,
+            acceleration: light.acceleration,
+            force: raw.force,
+            segments: raw.segments,
+            moving,
+            grid: Vec::new(),
+            bandwidth: relative / interval,
+            position_noise,
+            rest_speed,
+            heavier: (heavy.velocity, heavy.acceleration),
+            low_pass,
+        };
+        prepared.grid = prepared.choose_grid(relative);
+        if prepared.grid.len() < LEAST_POINTS {
+            let (points, needed) = (prepared.grid.len(), LEAST_POINTS);
+            return Err(PreparationError::TooLittle { points, needed });
+        }
+        Ok(prepared)
+    }
+
+    fn choose_grid(&self, relative: f64) -> Vec<usize> {
+        let stride = ((1.0 / (GRID * relative)) as usize).max(self.time.len() / MOST_POINTS).max(1);
+        // Two periods of the bandwidth at either end of a piece belong to the filter.
+        let edge = (2.0 / relative).ceil() as usize;
+        let smooth: Vec<f64> = self.filtered(&self.moving);
+        let inner = |range: &Range<usize>| {
+            (range.start + edge..range.end.saturating_sub(edge)).step_by(stride)
+        };
+        self.segments.iter().flat_map(inner).filter(|&k| smooth[k] > MOVING).collect()
+    }
+
+    /// A signal on the comparison grid: zero where the axis rests, low-passed, thinned out.
+    pub fn compare(&self, signal: &[f64]) -> Vec<f64> {
+        let masked: Vec<f64> = signal.iter().zip(&self.moving).map(|(s, m)| s * m).collect();
+        let filtered = self.filtered(&masked);
+        self.grid.iter().map(|&k| filtered[k]).collect()
+    }
+
+    /// A signal on the comparison grid as it is.
+    pub fn sample(&self, signal: &[f64]) -> Vec<f64> {
+        self.grid.iter().map(|&k| signal[k]).collect()
+    }
+
+    fn filtered(&self, signal: &[f64]) -> Vec<f64> {
+        self.segments.iter().flat_map(|range| self.low_pass.run(&signal[range.clone()])).collect()
+    }
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// Uniformly sampled position and force.
+#[derive(Default)]
+struct Raw {
+    time: Vec<f64>,
+    position: Vec<f64>,
+    force: Vec<f64>,
+    segments: Vec<Range<usize>>,
+}
+
+struct Motion {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+impl Raw {
+    /// Appends a piece on a uniform grid of the median interval (linear interpolation, which leaves
+    /// a uniformly sampled piece as it is but for jitter).
+    fn resample(
+        &mut self,
+        time: &[f64],
+        position: &[f64],
+        force: &[f64],
+        interval: f64,
+        hold: Hold,
+    ) {
+        let (first, last) = (time[0], time[time.len() - 1]);
+        let count = ((last - first) / interval).round() as usize + 1;
+        let step = if count > 1 { (last - first) / (count - 1) as f64 } else { interval };
+        let start = self.time.len();
+        let mut before = 0;
+        for k in 0..count {
+            let now = first + k as f64 * step;
+            while before + 2 < time.len() && time[before + 1] <= now {
+                before += 1;
+            }
+            let after = (before + 1).min(time.len() - 1);
+            let width = time[after] - time[before];
+            let part =
+                if width > 0.0 { ((now - time[before]) / width).clamp(0.0, 1.0) } else { 0.0 };
+            let between = |values: &[f64]| values[before] + part * (values[after] - values[before]);
+            self.time.push(now);
+            self.position.push(between(position));
+            self.force.push(match hold {
+                Hold::Sampled => between(force),
+                Hold::ZeroOrder => force[if part > 1.0 - 1e-6 { after } else { before }],
+            });
+        }
+        self.segments.push(start..self.time.len());
+        if hold == Hold::ZeroOrder {
+            centre_held(&mut self.force[start..]);
+        }
+    }
+
+    fn motion(&self, smoother: &LowPass, interval: f64, hold: Hold) -> Motion {
+        let mut motion =
+            Motion { position: Vec::new(), velocity: Vec::new(), acceleration: Vec::new() };
+        for range in &self.segments {
+            let x = smoother.run(&self.position[range.clone()]);
+            motion.velocity.extend(first_difference(&x, interval));
+            motion.acceleration.extend(second_difference(&x, interval, hold));
+            motion.position.extend(x);
+        }
+        motion
+    }
+}
+
+/// A command held over each interval acts on the motion around a sample as the mean of the intervals
+/// before and after it; for a mass that is exact with the second difference of its position.
+fn centre_held(force: &mut [f64]) {
+    for k in (1..force.len()).rev() {
+        force[k] = 0.5 * (force[k] + force[k - 1]);
+    }
+}
+
+/// Central difference of fourth order, of second order near the ends.
+fn first_difference(x: &[f64], interval: f64) -> Vec<f64> {
+    let n = x.len();
+    let at = |k: usize| match k {
+        _ if n < 3 => 0.0,
+        0 => x[1] - x[0],
+        _ if k == n - 1 => x[k] - x[k - 1],
+        _ if k == 1 || k == n - 2 => 0.5 * (x[k + 1] - x[k - 1]),
+        _ => (8.0 * (x[k + 1] - x[k - 1]) - (x[k + 2] - x[k - 2])) / 12.0,
+    };
+    (0..n).map(|k| at(k) / interval).collect()
+}
+
+/// Second difference: of second order where the force is held (there it is exact), else of fourth.
+fn second_difference(x: &[f64], interval: f64, hold: Hold) -> Vec<f64> {
+    let n = x.len();
+    let simple = |k: usize| x[k + 1] - 2.0 * x[k] + x[k - 1];
+    let at = |k: usize| match k {
+        _ if n < 3 => 0.0,
+        _ if k == 0 || k == n - 1 => simple(k.clamp(1, n - 2)),
+        _ if hold == Hold::ZeroOrder || k == 1 || k == n - 2 => simple(k),
+        _ => (16.0 * (x[k + 1] + x[k - 1]) - (x[k + 2] + x[k - 2]) - 30.0 * x[k]) / 12.0,
+    };
+    (0..n).map(|k| at(k) / (interval * interval)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use missing_physics::Channel;
+
+    fn sine(interval: f64, jitter: f64) -> Recording {
+        let time: Vec<f64> = (0..4000)
+            .map(|k| interval * (f64::from(k) + jitter * (1.7 * f64::from(k)).sin()))
+            .collect();
+        let position = time.iter().map(|t| 0.05 * (6.0 * t).sin()).collect();
+        let force = time.iter().map(|t| 10.0 * (6.0 * t).cos()).collect();
+        let channels =
+            vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+        Recording::new("sine", time, channels).unwrap()
+    }
+
+    #[test]
+    fn velocity_and_acceleration_of_a_sine_are_within_a_per_mille() {
+        let prepared = Prepared::new(&sine(1e-3, 0.0), None).unwrap();
+        for &k in &prepared.grid {
+            let t = prepared.time[k];
+            assert!((prepared.velocity[k] - 0.3 * (6.0 * t).cos()).abs() < 3e-4);
+            assert!((prepared.acceleration[k] + 1.8 * (6.0 * t).sin()).abs() < 2e-3);
+        }
+    }
+
+    #[test]
+    fn irregular_sampling_costs_little() {
+        let prepared = Prepared::new(&sine(1e-3, 0.2), None).unwrap();
+        let worst = prepared
+            .grid
+            .iter()
+            .map(|&k| (prepared.velocity[k] - 0.3 * (6.0 * prepared.time[k]).cos()).abs())
+            .fold(0.0, f64::max);
+        assert!(worst < 3e-3, "{worst}");
+    }
+
+    #[test]
+    fn a_constant_position_is_refused() {
+        let time: Vec<f64> = (0..100).map(|k| 1e-3 * f64::from(k)).collect();
+        let force = time.clone();
+        let channels =
+            vec![Channel::new("force", "N", force), Channel::new("position", "m", vec![1.0; 100])];
+        let recording = Recording::new("still", time, channels).unwrap();
+        assert_eq!(
+            Prepared::new(&recording, None).unwrap_err(),
+            PreparationError::Constant { channel: "position" }
+        );
+    }
+}
