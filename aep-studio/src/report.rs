@@ -29,9 +29,8 @@ pub struct Source {
 
 const STYLE: &str = include_str!("report/style.css");
 
-/// The page: one file, nothing loaded from elsewhere, no scripts.
+/// The page of a discovery: one file, nothing loaded from elsewhere, no scripts.
 pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
-    let title = format!("What the model lacks: {}", source.name);
     let sections = [
         verdict::head(discovery, source),
         ladder::section(discovery),
@@ -42,17 +41,32 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
         doubts::section(discovery),
         data::section(check, source),
     ];
-    let mut page = format!(
+    page(&format!("What the model lacks: {}", source.name), &sections, discovery, source)
+}
+
+/// The page of a model on data, without a verdict.
+pub fn comparison(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
+    let sections = [
+        verdict::plain_head(discovery, source),
+        where_it_fails::section(discovery),
+        curves(discovery),
+        ladder::section(discovery),
+        parameters::section(discovery),
+        data::section(check, source),
+    ];
+    page(&format!("How well the model fits: {}", source.name), &sections, discovery, source)
+}
+
+fn page(title: &str, sections: &[String], discovery: &Discovery, source: &Source) -> String {
+    format!(
         "<!doctype html>\n<html lang=en>\n<head><meta charset=utf-8>\
          <meta name=viewport content=\"width=device-width, initial-scale=1\">\
          <meta name=color-scheme content=\"light dark\">\n\
-         <title>{}</title>\n<style>\n{STYLE}</style></head>\n<body><main>\n",
-        escape(&title)
-    );
-    page.extend(sections);
-    page.push_str(&foot(discovery, source));
-    page.push_str("</main></body></html>\n");
-    page
+         <title>{}</title>\n<style>\n{STYLE}</style></head>\n<body><main>\n{}{}</main></body></html>\n",
+        escape(title),
+        sections.concat(),
+        foot(discovery, source),
+    )
 }
 
 fn curves(discovery: &Discovery) -> String {

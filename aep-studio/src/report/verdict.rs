@@ -22,6 +22,18 @@ pub(super) fn head(discovery: &Discovery, source: &Source) -> String {
     )
 }
 
+/// Head of a page without a verdict: the model and its errors.
+pub(super) fn plain_head(discovery: &Discovery, source: &Source) -> String {
+    let effects = discovery.ladder.last().map(|rung| rung.effects.join(" + ")).unwrap_or_default();
+    format!(
+        "<header class=good><p class=file>{}</p><h1>How well the model fits</h1>\
+         <p class=summary>{}</p>{}</header>\n",
+        escape(&source.name),
+        escape(&effects),
+        numbers(discovery),
+    )
+}
+
 fn headline(discovery: &Discovery) -> String {
     let verdict = words::verdict(discovery.verdict);
     if discovery.added.is_empty() {
@@ -43,7 +55,14 @@ fn numbers(discovery: &Discovery) -> String {
     let mut facts = Vec::new();
     let (first, last) = (at(discovery.ladder.first()), at(discovery.ladder.last()));
     if let Some(first) = first {
-        facts.push((name.value(first), format!("{} error of the base model", name.quantity)));
+        facts.push((
+            name.value(first),
+            format!(
+                "{} error of the {}",
+                name.quantity,
+                if discovery.ladder.len() > 1 { "base model" } else { "model" }
+            ),
+        ));
     }
     if let Some(last) = last.filter(|_| discovery.ladder.len() > 1) {
         facts.push((name.value(last), "with what was added".to_owned()));
