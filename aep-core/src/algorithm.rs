@@ -51,7 +51,7 @@ pub trait Algorithm<T: Scalar = f64>: Send {
     fn generation(&self) -> u64;
 
     /// Why going on is pointless, if the algorithm knows.
-    fn exhausted(&self) -> Option<&'static str> {
+    fn exhausted(&self) -> Option<&str> {
         None
     }
 

@@ -43,7 +43,7 @@ use crate::{
 /// }
 ///
 /// let domain = Domain::cube(2, -6.0, 6.0)?;
-/// let mut engine = Engine::new("fixed", &Start::new(&domain, 1), 40, Fixed, OneToOne)?;
+/// let mut engine = Engine::new("fixed", &Start::new(&domain, 1), 40, Fixed, OneToOne::Strict)?;
 /// for _ in 0..300 {
 ///     let costs: Vec<f64> = engine.ask().rows().map(|x| x[0].powi(2) + x[1].powi(2)).collect();
 ///     engine.tell(&costs)?;

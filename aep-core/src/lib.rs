@@ -22,6 +22,8 @@ mod algorithm;
 mod border;
 mod budget;
 pub mod checkpoint;
+mod cma_es;
+mod de;
 mod domain;
 mod driver;
 mod engine;
@@ -36,18 +38,25 @@ mod problem;
 pub mod random;
 mod scalar;
 mod selection;
+pub mod trials;
 
-pub use aep::{Aep, AepIndividual, AepMutation, AgeLimit, Division, Spread, StepScale, StepUnit};
+pub use aep::{
+    Aep, AepIndividual, AepMutation, AgeLimit, Components, Division, Spread, StepScale, StepUnit,
+};
 pub use algorithm::{Algorithm, Best, Method, Start};
 pub use border::Border;
 pub use budget::{Budget, Stagnation, StopReason};
 pub use checkpoint::CheckpointError;
+pub use cma_es::{CmaEs, Restarts};
+pub use de::{Control, De, Factors};
 pub use domain::{Domain, Scale};
 pub use driver::{Driver, Outcome, RunError, minimize};
 pub use engine::Engine;
 pub use error::{ConfigError, TellError};
 pub use evaluate::{Evaluator, Failures, Parallel, Serial, silence_caught_panics};
-pub use meta_ep::{LearningRate, MetaEp, MetaEpMutation, StepSizes, UpdateOrder};
+pub use meta_ep::{
+    CommonRate, LearningRate, MetaEp, MetaEpMutation, SigmaUnit, StepSizes, UpdateOrder,
+};
 pub use mutation::{Child, Mutation};
 pub use observe::{Observer, Progress};
 pub use points::{Batch, Points};

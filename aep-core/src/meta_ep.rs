@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::random::{self, Stream};
 use crate::{
     Algorithm, Border, Child, ConfigError, Domain, Engine, Individual, Method, Mutation,
-    Population, Scalar, Start, StepUnit, Tournament,
+    Population, Scalar, Start, Tournament,
 };
 
 /// Which of position and step size is mutated first.
@@ -16,6 +16,16 @@ pub enum UpdateOrder {
     PositionFirst,
     /// The step size mutates, the new one moves the position (habit of evolution strategies).
     SigmaFirst,
+}
+
+/// What the step size at the start is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SigmaUnit {
+    /// As it is, by the paper.
+    Absolute,
+    /// In widths of the domain (in search coordinates), per component.
+    Domain,
 }
 
 /// What counts as n in the learning rates.
@@ -48,7 +58,7 @@ pub enum LearningRate {
 /// | [`UpdateOrder`], [`Border`], ties | not said | readings of the paper's text |
 ///
 /// **Limits.** Step sizes can shrink faster than the distance to the optimum and then stall; the
-/// start value matters (the paper's f5). [`StepUnit::Domain`] makes it relative to the domain.
+/// start value matters (the paper's f5). [`SigmaUnit::Domain`] makes it relative to the domain.
 ///
 /// Reference: N. Saravanan, D. B. Fogel, "Learning Strategy Parameters in Evolutionary Programming:
 /// An Empirical Study", Proc. 3rd Annual Conference on Evolutionary Programming, 1994.
@@ -58,12 +68,14 @@ pub struct MetaEp {
     pub population: usize,
     /// Step size at the start, in units of `unit`.
     pub sigma: f64,
-    /// What the step size is measured in; [`StepUnit::Population`] is not meaningful here.
-    pub unit: StepUnit,
+    /// What the step size at the start is measured in.
+    pub unit: SigmaUnit,
     /// Which is mutated first.
     pub order: UpdateOrder,
     /// What counts as n in tau and tau'.
     pub learning_rate: LearningRate,
+    /// Which rate is common to all components.
+    pub common_rate: CommonRate,
     /// What happens outside the domain.
     pub border: Border,
     /// Who survives.
@@ -72,16 +84,27 @@ pub struct MetaEp {
     pub ties: crate::Ties,
 }
 
+/// Which of the two learning rates belongs to the number common to all components.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CommonRate {
+    /// tau' = 1 / sqrt(2 n), the smaller one (Baeck & Schwefel 1993).
+    TauPrime,
+    /// tau = 1 / sqrt(2 sqrt n), the larger one.
+    Tau,
+}
+
 impl MetaEp {
     /// The paper's settings, in the reading that comes closest to its printed results.
     pub fn paper() -> Self {
         Self {
             population: 40,
             sigma: 2.5,
-            unit: StepUnit::Absolute,
+            unit: SigmaUnit::Absolute,
             order: UpdateOrder::PositionFirst,
             learning_rate: LearningRate::Dimension,
-            border: Border::KeepComponent,
+            common_rate: CommonRate::Tau,
+            border: Border::Reflect,
             opponents: 10,
             ties: crate::Ties::Cost,
         }
@@ -89,7 +112,7 @@ impl MetaEp {
 
     /// Settings for real tasks: the first steps are a fifth of the domain in every component.
     pub fn practical() -> Self {
-        Self { sigma: 0.2, unit: StepUnit::Domain, border: Border::Reflect, ..Self::paper() }
+        Self { sigma: 0.2, unit: SigmaUnit::Domain, ..Self::paper() }
     }
 
     /// The same with another population size.
@@ -116,6 +139,12 @@ impl MetaEp {
         Self { border, ..self }
     }
 
+    /// The same with another rate common to all components.
+    #[must_use]
+    pub fn with_common_rate(self, common_rate: CommonRate) -> Self {
+        Self { common_rate, ..self }
+    }
+
     /// The same with another n in the learning rates.
     #[must_use]
     pub fn with_learning_rate(self, learning_rate: LearningRate) -> Self {
@@ -125,9 +154,7 @@ impl MetaEp {
     fn check(&self) -> Result<(), ConfigError> {
         let valid = self.sigma > 0.0 && self.sigma.is_finite();
         let hint = "must be positive and finite";
-        ConfigError::require(valid, "meta-ep", "sigma", self.sigma, hint)?;
-        let hint = "use absolute steps or steps in units of the domain";
-        ConfigError::require(self.unit != StepUnit::Population, "meta-ep", "unit", f64::NAN, hint)
+        ConfigError::require(valid, "meta-ep", "sigma", self.sigma, hint)
     }
 }
 
@@ -157,9 +184,9 @@ impl<T: Scalar> Individual<T> for StepSizes<T> {}
 pub struct MetaEpMutation<T> {
     config: MetaEp,
     /// Of one component's own number.
-    tau: T,
+    rate: T,
     /// Of the number common to all components.
-    tau_common: T,
+    common_rate: T,
 }
 
 impl<T: Scalar> MetaEpMutation<T> {
@@ -169,8 +196,12 @@ impl<T: Scalar> MetaEpMutation<T> {
             LearningRate::Dimension => dimension as f64,
             LearningRate::Population => config.population as f64,
         };
-        let (tau, tau_common) = ((2.0 * n.sqrt()).sqrt().recip(), (2.0 * n).sqrt().recip());
-        Self { config, tau: T::of(tau), tau_common: T::of(tau_common) }
+        let (tau, tau_prime) = ((2.0 * n.sqrt()).sqrt().recip(), (2.0 * n).sqrt().recip());
+        let (own, common) = match config.common_rate {
+            CommonRate::TauPrime => (tau, tau_prime),
+            CommonRate::Tau => (tau_prime, tau),
+        };
+        Self { config, rate: T::of(own), common_rate: T::of(common) }
     }
 }
 
@@ -180,8 +211,8 @@ impl<T: Scalar> Mutation<T> for MetaEpMutation<T> {
     fn individual(&self, domain: &Domain<T>, _: &mut Stream) -> StepSizes<T> {
         let limits = domain.search_lower().iter().zip(domain.search_upper());
         let unit = |(lo, hi): (&T, &T)| match self.config.unit {
-            StepUnit::Domain => *hi - *lo,
-            _ => T::one(),
+            SigmaUnit::Domain => *hi - *lo,
+            SigmaUnit::Absolute => T::one(),
         };
         StepSizes(limits.map(|limits| unit(limits) * T::of(self.config.sigma)).collect())
     }
@@ -196,10 +227,10 @@ impl<T: Scalar> Mutation<T> for MetaEpMutation<T> {
     ) {
         let base = population.positions.row(parent);
         let sigma = &population.individuals[parent].0;
-        let common = self.tau_common * random::normal::<T>(rng);
+        let common = self.common_rate * random::normal::<T>(rng);
         for j in 0..base.len() {
             let limits = (domain.search_lower()[j], domain.search_upper()[j]);
-            let mutated = sigma[j] * (common + self.tau * random::normal::<T>(rng)).exp();
+            let mutated = sigma[j] * (common + self.rate * random::normal::<T>(rng)).exp();
             let moving = match self.config.order {
                 UpdateOrder::PositionFirst => sigma[j],
                 UpdateOrder::SigmaFirst => mutated,

@@ -130,3 +130,25 @@ impl<T: Scalar, E: std::fmt::Display, F: Fn(&[T]) -> Result<T, E> + Sync> Proble
         self.errors.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
+
+impl<T: Scalar, P: Problem<T> + ?Sized> Problem<T> for &P {
+    fn domain(&self) -> &Domain<T> {
+        (**self).domain()
+    }
+
+    fn evaluate(&self, x: &[T]) -> T {
+        (**self).evaluate(x)
+    }
+
+    fn evaluate_batch(&self, points: Batch<'_, T>, costs: &mut [T]) {
+        (**self).evaluate_batch(points, costs);
+    }
+
+    fn batch_size(&self) -> usize {
+        (**self).batch_size()
+    }
+
+    fn errors(&self) -> Errors {
+        (**self).errors()
+    }
+}

@@ -16,14 +16,22 @@
 //! ```
 
 pub mod axis;
+pub mod challenge;
+pub mod closed_loop;
 pub mod driven;
 pub mod effects;
 pub mod family;
 pub mod model;
+pub mod reference;
+pub mod simulator;
 
 mod signal;
 
 pub use axis::{Axis, Quantity};
+pub use challenge::Challenge;
+pub use closed_loop::{Controller, Pd, Setup, closed_loop};
 pub use driven::{Columns, MeasuredMotion, MotionError, columns_along, force_along};
 pub use effects::{Effect, Library};
 pub use model::{Model, ModelError};
+pub use reference::{Profile, Reference};
+pub use simulator::{Batch, Input, SimulationError, Start, Trajectory, simulate};

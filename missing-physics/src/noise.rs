@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use crate::family::Coordinate;
 
-/// Neighbours of each point.
-const NEIGHBOURS: usize = 8;
+/// Neighbours of each point. Few: farther ones differ by structure that the model lacks, and the line
+/// through them would undershoot at distance zero.
+const NEIGHBOURS: usize = 3;
 /// Most points that are looked at; more are thinned out evenly.
 const MOST_POINTS: usize = 4000;
 /// Neighbours closer in time than this share of the recording share the same noise.
@@ -21,7 +22,7 @@ const APART: f64 = 0.01;
 pub fn floor(residual: &[f64], coordinates: &[Coordinate]) -> f64 {
     let stride = residual.len().div_ceil(MOST_POINTS).max(1);
     let index: Vec<usize> = (0..residual.len()).step_by(stride).collect();
-    if index.len() < 10 * NEIGHBOURS || coordinates.is_empty() {
+    if index.len() < 40 * NEIGHBOURS || coordinates.is_empty() {
         return 0.0;
     }
     let axes: Vec<Vec<f64>> = coordinates
@@ -40,7 +41,7 @@ pub fn floor(residual: &[f64], coordinates: &[Coordinate]) -> f64 {
     };
     let points: Vec<(f64, f64)> =
         (0..NEIGHBOURS).map(|k| (mean(|p| p.0, k), 0.5 * mean(|p| p.1, k))).collect();
-    intercept(&points).clamp(0.0, points[0].1).sqrt()
+    intercept(&points).clamp(0.5 * points[0].1, points[0].1).sqrt()
 }
 
 /// Ranks from 0 to 1: every coordinate counts alike, whatever its unit and distribution.

@@ -13,7 +13,7 @@ use crate::basis::dot;
 
 /// Shifts at which the motion resembles itself more than this are no placebos: a periodic motion
 /// shifted by its period is the same experiment.
-const SELF_SIMILAR: f64 = 0.5;
+const SELF_SIMILAR: f64 = 0.3;
 /// Shortest shift as a share of the recording.
 const SHORTEST: f64 = 0.02;
 /// Where fewer shifts than this share of all remain, blocks are shuffled instead.

@@ -13,6 +13,12 @@ use crate::split::Split;
 /// Number of rearranged residuals.
 const PLACEBOS: usize = 199;
 
+/// A column whose square falls below this share when the model's own freedom is taken out says
+/// nothing that the model does not say.
+const NOTHING_NEW: f64 = 1e-6;
+/// Of two shapes that remove nearly as much, this close, the one tried first is taken.
+const AS_GOOD: f64 = 0.97;
+
 /// A candidate with the best shape that was tried.
 #[derive(Clone, Debug)]
 pub struct Screened {
@@ -136,7 +142,12 @@ fn trials<F: ModelFamily + ?Sized>(
             let mut columns = family.columns(&fit.model, &fit.prediction, term, &shape);
             for column in &mut columns {
                 column.iter_mut().zip(screening.weights).for_each(|(value, w)| *value *= w);
+                let before = dot(column, column);
                 own.project_out(column);
+                // What the model can do already is rounding noise after projection.
+                if dot(column, column) < NOTHING_NEW * before {
+                    column.fill(0.0);
+                }
             }
             let gram = gram(&columns);
             let visible =
@@ -169,10 +180,9 @@ fn shares(residual: &[f64], own: &Basis, trials: &[Trial], candidates: &[usize])
 }
 
 fn best_trial<'a>(trials: &'a [Trial], term: usize, residual: &[f64]) -> Option<&'a Trial> {
-    trials
-        .iter()
-        .filter(|trial| trial.term == term)
-        .max_by(|a, b| a.reduction(residual).0.total_cmp(&b.reduction(residual).0))
+    let of_term = || trials.iter().filter(|trial| trial.term == term);
+    let most = of_term().map(|trial| trial.reduction(residual).0).fold(0.0, f64::max);
+    of_term().find(|trial| trial.reduction(residual).0 >= AS_GOOD * most)
 }
 
 /// Largest squared length of a first column over the shapes.

@@ -17,6 +17,8 @@ use crate::report::Estimate;
 const BLOCKS: usize = 40;
 /// Half-width of a 95 % interval in standard errors (Student's t, about 35 degrees of freedom).
 const STUDENT: f64 = 2.03;
+/// Curvature added to every direction, relative to that of a single parameter.
+const UNSEEN: f64 = 1e-9;
 /// A parameter on a logarithmic scale is called identifiable where its interval spans less than
 /// this factor to either side.
 const WIDEST_FACTOR: f64 = 3.0;
@@ -92,8 +94,10 @@ fn standard_errors(fit: &Fit, weights: &[f64]) -> Vec<f64> {
         omega.ger(1.0, score, score, 1.0);
     }
     let mut errors = vec![f64::INFINITY; parameters];
-    // A pseudo-inverse would call a direction that the data do not see perfectly known.
-    let Some(inverse) = normal.clone().cholesky().map(|c| c.inverse()) else { return errors };
+    // Directions that the data do not see at all get a variance that is large but finite, so that
+    // those it sees keep theirs.
+    let unseen = DMatrix::identity(seen.len(), seen.len()) * UNSEEN;
+    let Some(inverse) = (normal + unseen).cholesky().map(|c| c.inverse()) else { return errors };
     let correction = BLOCKS as f64 / (BLOCKS - 1) as f64;
     let sandwich = &inverse * omega * &inverse * correction;
     for (position, &k) in seen.iter().enumerate() {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 pub use individual::AepIndividual;
 pub use mutation::AepMutation;
-pub use step::{AgeLimit, Division, Spread, StepScale, StepUnit};
+pub use step::{AgeLimit, Components, Division, Spread, StepScale, StepUnit};
 
 use crate::{Algorithm, Border, ConfigError, Engine, Method, OneToOne, Scalar, Start};
 
@@ -29,11 +29,11 @@ use crate::{Algorithm, Border, ConfigError, Engine, Method, OneToOne, Scalar, St
 /// | `beta1` | 5 | step factor after a success |
 /// | `beta2` | 0.05 | step factor after failures, times age |
 /// | [`Spread`], [`Division`], [`Border`] | not said | readings of the paper's text |
-/// | [`StepScale`], [`StepUnit`], [`AgeLimit`] | cost, absolute, unlimited | variants for real tasks |
+/// | [`StepScale`], [`StepUnit`], [`Components`], [`AgeLimit`] | cost, absolute, all, unlimited | variants for real tasks |
 ///
 /// **Limits.** By the paper's rules the step is proportional to the cost (or its root): the method
 /// converges only where the smallest cost is 0, its steps have the same length in every component,
-/// and it knows no correlation between components. [`Aep::practical`] removes the first two.
+/// and it knows no correlation between components. [`Aep::practical`] removes all three.
 ///
 /// Reference: J.-H. Kim, H.-K. Chae, J.-Y. Jeon, S.-W. Lee, "Identification and Control of Systems
 /// with Friction Using Accelerated Evolutionary Programming", IEEE Control Systems Magazine, 1996.
@@ -53,8 +53,10 @@ pub struct Aep {
     pub border: Border,
     /// What takes the place of the cost in s.
     pub step_scale: StepScale,
-    /// What one component's step is measured in.
+    /// What a step is measured in.
     pub step_unit: StepUnit,
+    /// Which components of a child move.
+    pub components: Components,
     /// What happens at high age.
     pub age_limit: AgeLimit,
 }
@@ -68,24 +70,32 @@ impl Aep {
             beta2: 0.05,
             spread: Spread::Variance,
             division: Division::PerComponent,
-            border: Border::KeepComponent,
+            border: Border::Reflect,
             step_scale: StepScale::Cost,
             step_unit: StepUnit::Absolute,
+            components: Components::All,
             age_limit: AgeLimit::Unlimited,
         }
     }
 
-    /// Settings for real tasks: a smallest cost that is not 0, parameters of different magnitude.
+    /// Settings for real tasks: costs whose smallest value is not 0, parameters that differ in
+    /// magnitude and only change well together, several minima.
+    ///
+    /// The paper's frame (age, direction, one-to-one competition) with three documented changes:
+    /// steps come from the covariance of the better three quarters of the population in place of
+    /// the cost ([`StepScale::Constant`], [`StepUnit::Covariance`]); an individual older than 3
+    /// generations has its next children from a better one ([`AgeLimit::Adopt`]); half of the
+    /// children change only a fifth of their components ([`Components::Mixed`]).
     pub fn practical() -> Self {
         Self {
-            beta1: 0.5,
-            beta2: 0.1,
+            beta1: 1.0,
+            beta2: 0.4,
             spread: Spread::StandardDeviation,
             division: Division::Whole,
-            border: Border::Reflect,
-            step_scale: StepScale::Relative { floor: 0.1 },
-            step_unit: StepUnit::Population,
-            age_limit: AgeLimit::Adopt(10),
+            step_scale: StepScale::Constant,
+            step_unit: StepUnit::Covariance { share: 0.75 },
+            components: Components::Mixed { probability: 0.5, share: 0.2 },
+            age_limit: AgeLimit::Adopt(3),
             ..Self::paper()
         }
     }
@@ -120,6 +130,12 @@ impl Aep {
         Self { step_scale, step_unit, ..self }
     }
 
+    /// The same with another choice of components.
+    #[must_use]
+    pub fn with_components(self, components: Components) -> Self {
+        Self { components, ..self }
+    }
+
     /// The same with another age limit.
     #[must_use]
     pub fn with_age_limit(self, age_limit: AgeLimit) -> Self {
@@ -132,16 +148,27 @@ impl Aep {
             let valid = value > 0.0 && value.is_finite();
             ConfigError::require(valid, "aep", setting, value, hint)?;
         }
+        let check =
+            |valid, setting, value, hint| ConfigError::require(valid, "aep", setting, value, hint);
         match self.step_scale {
-            StepScale::Cost => Ok(()),
             StepScale::AboveReference(value) => {
-                ConfigError::require(value.is_finite(), "aep", "reference", value, "must be finite")
+                check(value.is_finite(), "reference", value, "must be finite")?;
             }
             StepScale::Relative { floor } => {
                 let valid = floor >= 0.0 && floor.is_finite();
-                ConfigError::require(valid, "aep", "floor", floor, "must be 0 or positive")
+                check(valid, "floor", floor, "must be 0 or positive")?;
             }
+            StepScale::Cost | StepScale::Constant => {}
         }
+        if let StepUnit::Population { share } | StepUnit::Covariance { share } = self.step_unit {
+            check(share > 0.0 && share <= 1.0, "share", share, "must be in (0, 1]")?;
+        }
+        if let Components::Mixed { probability, share } = self.components {
+            let hint = "must be in [0, 1]";
+            check((0.0..=1.0).contains(&probability), "probability", probability, hint)?;
+            check((0.0..=1.0).contains(&share), "share of components", share, hint)?;
+        }
+        Ok(())
     }
 
     /// A fresh run, as the engine itself: gives access to the population.
@@ -151,7 +178,8 @@ impl Aep {
     ) -> Result<Engine<T, AepMutation<T>, OneToOne>, ConfigError> {
         self.check()?;
         let mutation = AepMutation::new(self.clone());
-        Ok(Engine::new("aep", start, self.population, mutation, OneToOne)?.with_configuration(self))
+        Ok(Engine::new("aep", start, self.population, mutation, OneToOne::Strict)?
+            .with_configuration(self))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rule 2: how an AEP child is made.
 
-use super::step::Steps;
-use super::{Aep, AepIndividual, AgeLimit, Division, Spread};
+use super::step::{Steps, add_scaled};
+use super::{Aep, AepIndividual, AgeLimit, Components, Division, Spread, StepUnit};
 use crate::random::{self, Stream};
 use crate::{Child, Domain, Mutation, Population, Scalar};
 
@@ -15,7 +15,8 @@ pub struct AepMutation<T: Scalar> {
 impl<T: Scalar> AepMutation<T> {
     /// The mutation that `config` describes.
     pub fn new(config: Aep) -> Self {
-        Self { config, steps: Steps::new() }
+        let steps = Steps::new(config.step_scale);
+        Self { config, steps }
     }
 
     /// Length of a step of an individual with this cost and age, in step units.
@@ -93,34 +94,82 @@ impl<T: Scalar> Mutation<T> for AepMutation<T> {
         let sigma = self.sigma(cost, age, domain.dimension());
         let base = population.positions.row(ancestor);
         let directions = (age == 1).then(|| own.directions());
-        self.move_components(base, directions, sigma, domain, rng, child.position);
+        let step = Step { base, directions, sigma, domain };
+        match self.config.step_unit {
+            StepUnit::Covariance { .. } => self.move_together(&step, rng, child.position),
+            _ => self.move_components(&step, rng, child.position),
+        }
+        self.keep_components(base, rng, child.position);
     }
 }
 
+/// One step to be made.
+struct Step<'a, T: Scalar> {
+    base: &'a [T],
+    /// Given at age 1.
+    directions: Option<&'a [i8]>,
+    sigma: T,
+    domain: &'a Domain<T>,
+}
+
 impl<T: Scalar> AepMutation<T> {
-    fn move_components(
-        &self,
-        base: &[T],
-        directions: Option<&[i8]>,
-        sigma: T,
-        domain: &Domain<T>,
-        rng: &mut Stream,
-        child: &mut [T],
-    ) {
-        let n = base.len();
-        let (lower, upper) = (&domain.search_lower()[..n], &domain.search_upper()[..n]);
-        let (units, child) = (&self.steps.units[..n], &mut child[..n]);
+    /// Every component by itself.
+    #[inline]
+    fn move_components(&self, step: &Step<'_, T>, rng: &mut Stream, child: &mut [T]) {
+        let n = step.base.len();
+        let (lower, upper) = (&step.domain.search_lower()[..n], &step.domain.search_upper()[..n]);
+        let (base, units, child) = (&step.base[..n], &self.steps.units[..n], &mut child[..n]);
         for j in 0..n {
             let mut propose = || {
-                let step = sigma * units[j] * random::normal::<T>(rng);
-                match directions {
-                    None => base[j] + step,
-                    Some(directions) if directions[j] < 0 => base[j] - step.abs(),
-                    Some(_) => base[j] + step.abs(),
+                let length = step.sigma * units[j] * random::normal::<T>(rng);
+                match step.directions {
+                    None => base[j] + length,
+                    Some(directions) if directions[j] < 0 => base[j] - length.abs(),
+                    Some(_) => base[j] + length.abs(),
                 }
             };
             let proposal = propose();
             child[j] = self.config.border.settle(proposal, base[j], (lower[j], upper[j]), propose);
+        }
+    }
+
+    /// All components by one vector from N(0, sigma^2 C).
+    fn move_together(&self, step: &Step<'_, T>, rng: &mut Stream, child: &mut [T]) {
+        child.fill(T::zero());
+        for deviation in self.steps.deviations.chunks_exact(child.len()) {
+            add_scaled(child, deviation, random::normal::<T>(rng));
+        }
+        let against = step.directions.is_some_and(|d| self.along(child, d) < T::zero());
+        let sigma = if against { -step.sigma } else { step.sigma };
+        let (lower, upper) = (step.domain.search_lower(), step.domain.search_upper());
+        for (j, (child, &base)) in child.iter_mut().zip(step.base).enumerate() {
+            let again = || base + sigma * self.steps.units[j] * random::normal::<T>(rng);
+            let proposal = base + sigma * *child;
+            *child = self.config.border.settle(proposal, base, (lower[j], upper[j]), again);
+        }
+    }
+
+    /// How far a vector points along the directions, every component in its own unit.
+    fn along(&self, vector: &[T], directions: &[i8]) -> T {
+        let units = self.steps.units.iter();
+        vector.iter().zip(directions).zip(units).fold(T::zero(), |sum, ((v, d), unit)| {
+            let length = if *unit > T::zero() { *v / *unit } else { T::zero() };
+            sum + if *d < 0 { -length } else { length }
+        })
+    }
+
+    /// Takes back the move of the components that are not to change.
+    #[inline]
+    fn keep_components(&self, base: &[T], rng: &mut Stream, child: &mut [T]) {
+        let Components::Mixed { probability, share } = self.config.components else { return };
+        if random::uniform::<f64>(rng) >= probability {
+            return;
+        }
+        let certain = random::index(rng, base.len());
+        for (j, (child, base)) in child.iter_mut().zip(base).enumerate() {
+            if j != certain && random::uniform::<f64>(rng) >= share {
+                *child = *base;
+            }
         }
     }
 }

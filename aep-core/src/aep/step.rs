@@ -41,10 +41,13 @@ pub enum StepScale {
         /// Scale of the best individual's steps.
         floor: f64,
     },
+    /// 1: the cost plays no part, s = beta. Only the unit then makes steps shrink, so this needs
+    /// [`StepUnit::Population`] or [`StepUnit::Covariance`] to converge.
+    Constant,
 }
 
-/// The length that one component's step is measured in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// The length that a step is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StepUnit {
@@ -52,9 +55,36 @@ pub enum StepUnit {
     Absolute,
     /// The width of the domain (in search coordinates).
     Domain,
-    /// The standard deviation of the component over the better half of the population: shrinks as
-    /// the population converges and follows differently scaled parameters.
-    Population,
+    /// The standard deviation of each component over the better `share` of the population: shrinks
+    /// as the population converges and follows differently scaled parameters.
+    Population {
+        /// Part of the population that counts, in (0, 1].
+        share: f64,
+    },
+    /// The covariance of the better `share` of the population: follows parameters that only change
+    /// well together. A step is drawn from N(0, s^2 C); at age 1 it is mirrored, if need be, into
+    /// the half-space that the directions d point into.
+    Covariance {
+        /// Part of the population that counts, in (0, 1].
+        share: f64,
+    },
+}
+
+/// Which components of a child differ from its parent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Components {
+    /// All, by the paper.
+    All,
+    /// With `probability`, each component moves with probability `share` only (at least one does):
+    /// for costs with many minima along the axes.
+    Mixed {
+        /// Part of the children that are made this way.
+        probability: f64,
+        /// Part of the components that then move.
+        share: f64,
+    },
 }
 
 /// What happens to an individual that has had no success for long.
@@ -77,12 +107,22 @@ pub(super) struct Steps<T> {
     offset: T,
     factor: T,
     floor: T,
+    /// Unit of each component.
     pub(super) units: Vec<T>,
+    /// Rows whose random combination has the covariance of the better part, one after the other;
+    /// empty unless the unit is the covariance.
+    pub(super) deviations: Vec<T>,
 }
 
 impl<T: Scalar> Steps<T> {
-    pub(super) fn new() -> Self {
-        Self { offset: T::zero(), factor: T::one(), floor: T::zero(), units: Vec::new() }
+    pub(super) fn new(scale: StepScale) -> Self {
+        let (zero, one) = (T::zero(), T::one());
+        let (offset, factor, floor) = match scale {
+            StepScale::Constant => (zero, zero, one),
+            StepScale::AboveReference(reference) => (T::of(reference), one, zero),
+            StepScale::Cost | StepScale::Relative { .. } => (zero, one, zero),
+        };
+        Self { offset, factor, floor, units: Vec::new(), deviations: Vec::new() }
     }
 
     /// The value that multiplies beta.
@@ -97,15 +137,18 @@ impl<T: Scalar> Steps<T> {
         population: &Population<T, I>,
         domain: &Domain<T>,
     ) {
-        match scale {
-            StepScale::Cost => {}
-            StepScale::AboveReference(reference) => self.offset = T::of(reference),
-            StepScale::Relative { floor } => self.relate(&population.costs, T::of(floor)),
+        if let StepScale::Relative { floor } = scale {
+            self.relate(&population.costs, T::of(floor));
         }
-        if unit == StepUnit::Population {
-            self.units = spread_of_better_half(population);
-        } else if self.units.is_empty() {
-            self.units = fixed_units(unit, domain);
+        match unit {
+            StepUnit::Population { share } | StepUnit::Covariance { share } => {
+                self.spread(population, share);
+                if let StepUnit::Population { .. } = unit {
+                    self.deviations.clear();
+                }
+            }
+            _ if self.units.is_empty() => self.units = fixed_units(unit, domain),
+            _ => {}
         }
     }
 
@@ -116,6 +159,40 @@ impl<T: Scalar> Steps<T> {
         self.offset = best;
         self.factor = if usable { T::one() / width } else { T::zero() };
         self.floor = floor;
+    }
+
+    /// Deviations of the better part from its mean, divided by the root of their number, and their
+    /// lengths per component. Large populations are represented by a part of their members.
+    fn spread<I>(&mut self, population: &Population<T, I>, share: f64) {
+        let dimension = population.positions.dimension();
+        let order = population.ranking();
+        let count =
+            ((order.len() as f64 * share).round() as usize).clamp(2.min(order.len()), order.len());
+        let stride = count.div_ceil((4 * dimension).max(40));
+        let members: Vec<usize> = order[..count].iter().step_by(stride).copied().collect();
+        let weight = T::one() / T::of(members.len() as f64);
+        let mut mean = vec![T::zero(); dimension];
+        for &i in &members {
+            add_scaled(&mut mean, population.positions.row(i), weight);
+        }
+        self.units = vec![T::zero(); dimension];
+        self.deviations.clear();
+        for &i in &members {
+            for (j, (z, mean)) in population.positions.row(i).iter().zip(&mean).enumerate() {
+                let deviation = (*z - *mean) * weight.sqrt();
+                self.units[j] = self.units[j] + deviation * deviation;
+                self.deviations.push(deviation);
+            }
+        }
+        self.units.iter_mut().for_each(|unit| *unit = unit.sqrt());
+    }
+}
+
+/// `sum += factor * row`.
+#[inline]
+pub(super) fn add_scaled<T: Scalar>(sum: &mut [T], row: &[T], factor: T) {
+    for (sum, value) in sum.iter_mut().zip(row) {
+        *sum = *sum + factor * *value;
     }
 }
 
@@ -131,26 +208,4 @@ fn best_and_median<T: Scalar>(costs: &[T]) -> (T, T) {
         a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal)
     });
     (below.iter().copied().fold(*median, T::min), *median)
-}
-
-/// Standard deviation of each component over the individuals not worse than the median.
-fn spread_of_better_half<T: Scalar, I>(population: &Population<T, I>) -> Vec<T> {
-    let (_, median) = best_and_median(&population.costs);
-    let rows = || (0..population.len()).filter(|&i| population.costs[i] <= median);
-    let count = T::of(rows().count() as f64);
-    let dimension = population.positions.dimension();
-    let mut mean = vec![T::zero(); dimension];
-    for row in rows() {
-        for (mean, z) in mean.iter_mut().zip(population.positions.row(row)) {
-            *mean = *mean + *z / count;
-        }
-    }
-    let mut variance = vec![T::zero(); dimension];
-    for row in rows() {
-        let z = population.positions.row(row);
-        for ((variance, z), mean) in variance.iter_mut().zip(z).zip(&mean) {
-            *variance = *variance + (*z - *mean).powi(2) / count;
-        }
-    }
-    variance.into_iter().map(T::sqrt).collect()
 }

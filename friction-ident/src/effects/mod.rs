@@ -11,11 +11,13 @@ mod library;
 pub mod actuator_lag;
 pub mod asymmetry;
 pub mod coulomb;
+pub mod gravity_pendulum;
 pub mod offset;
 pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
 pub mod ripple;
+pub mod spring;
 pub mod stribeck;
 pub mod viscous;
 
@@ -142,6 +144,8 @@ pub static ALL: &[&dyn Effect] = &[
     &presliding::Presliding,
     &ripple::Ripple,
     &position_friction::PositionFriction,
+    &spring::Spring,
+    &gravity_pendulum::GravityPendulum,
     &quadratic_drag::QuadraticDrag,
     &actuator_lag::ActuatorLag,
 ];

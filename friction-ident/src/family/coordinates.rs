@@ -147,7 +147,8 @@ pub fn cycles(p: &Prepared) -> Vec<Range<usize>> {
     let [range] = p.segments.as_slice() else { return Vec::new() };
     let x = &p.position[range.clone()];
     let Some(period) = period(x) else { return Vec::new() };
-    let count = x.len() / period;
+    // The last cycle may be cut short; less than half of one belongs to its predecessor.
+    let count = (x.len() + period / 2) / period;
     let at = |sample: usize| p.grid.partition_point(|&k| k < range.start + sample);
     (0..count)
         .map(|c| at(c * period)..if c + 1 == count { p.grid.len() } else { at((c + 1) * period) })

@@ -80,13 +80,14 @@ impl Limits {
             name: about.name.into(),
             title: about.title.into(),
             equation: about.equation.into(),
-            parameters: fitted.map(|parameter| self.parameter(parameter)).collect(),
+            parameters: fitted
+                .map(|parameter| self.parameter(parameter, is_amplitude(about, parameter)))
+                .collect(),
             always: false,
         }
     }
 
-    fn parameter(&self, parameter: &effects::Parameter) -> Parameter {
-        let amplitude = parameter.role == effects::Role::Amplitude;
+    fn parameter(&self, parameter: &effects::Parameter, amplitude: bool) -> Parameter {
         let (lower, upper, start) =
             if amplitude { self.amplitude(parameter) } else { self.shape(parameter) };
         Parameter {
@@ -114,6 +115,7 @@ impl Limits {
             Quantity::Stiffness => Size { rms: self.stroke, most: self.stroke },
             Quantity::Mass => self.acceleration,
             Quantity::Force => Size { rms: 1.0, most: 1.0 },
+            Quantity::Time => return (0.0, parameter.high, self.interval),
             _ => {
                 let (low, high) = parameter.range(self.axis);
                 return (low, high, parameter.typical(self.axis));
@@ -145,6 +147,14 @@ impl Limits {
         let start = if (lower..=upper).contains(&typical) { typical } else { middle };
         (lower, upper, start)
     }
+}
+
+/// A lag or a delay of 0 is none, and a small one acts in proportion: in a comparison of forces it
+/// is an amplitude, like the sizes that a law is linear in.
+fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
+    let linear = parameter.scale == effects::Scale::Linear;
+    parameter.role == effects::Role::Amplitude
+        || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
 }
 
 /// Trial periods of a ripple, the shortest first: evenly in spatial frequency, half a line width

@@ -28,7 +28,7 @@ use crate::model::{MASS, Model, ModelError, address};
 /// What can be chosen.
 #[derive(Clone, Default)]
 pub struct Options {
-    /// Bandwidth of the comparison, Hz; by default 4 % of the sampling frequency.
+    /// Bandwidth of the comparison, Hz; by default 5 % of the sampling frequency.
     pub bandwidth: Option<f64>,
     /// Effects that may be in a model.
     pub library: Library,

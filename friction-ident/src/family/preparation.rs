@@ -16,7 +16,7 @@ const SMOOTHER: f64 = 0.1;
 /// A second, heavier smoother: where the two disagree, the motion is in doubt.
 const HEAVIER: f64 = 0.06;
 /// Default bandwidth of the comparison as a share of the sampling frequency.
-const BANDWIDTH: f64 = 0.04;
+const BANDWIDTH: f64 = 0.05;
 /// Grid points per period of the bandwidth.
 const GRID: f64 = 2.5;
 /// Most grid points; a longer recording is thinned out.
@@ -90,7 +90,7 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares `recording`; `bandwidth` in Hz, by default 4 % of the sampling frequency.
+    /// Prepares `recording`; `bandwidth` in Hz, by default 5 % of the sampling frequency.
     ///
     /// # Errors
     /// A channel is missing or constant, or too little of the recording moves.

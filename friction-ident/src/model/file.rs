@@ -31,6 +31,10 @@ impl Model {
     pub fn from_json(text: &str, library: &Library) -> Result<Self, ModelError> {
         let file: File =
             serde_json::from_str(text).map_err(|error| ModelError::Syntax(error.to_string()))?;
+        Self::from_file(&file, library)
+    }
+
+    fn from_file(file: &File, library: &Library) -> Result<Self, ModelError> {
         let mut model = Self::new(file.axis, file.mass)?;
         for term in &file.effects {
             let effect = library.find(&term.effect)?;
@@ -48,13 +52,30 @@ impl Model {
     /// # Errors
     /// [`ModelError::Syntax`] if a value cannot be written; all values of a model can.
     pub fn to_json(&self) -> Result<String, ModelError> {
+        serde_json::to_string_pretty(self).map_err(|error| ModelError::Syntax(error.to_string()))
+    }
+
+    fn to_file(&self) -> File {
         let effects = self.terms.iter().map(|term| {
             let names = term.effect.about().parameters.iter().map(|p| p.name.to_owned());
             let parameters = names.zip(term.values.iter().copied()).collect();
             FileTerm { effect: term.name().to_owned(), parameters }
         });
-        let file = File { axis: self.axis, mass: self.mass, effects: effects.collect() };
-        serde_json::to_string_pretty(&file).map_err(|error| ModelError::Syntax(error.to_string()))
+        File { axis: self.axis, mass: self.mass, effects: effects.collect() }
+    }
+}
+
+impl Serialize for Model {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_file().serialize(serializer)
+    }
+}
+
+/// With the built-in effects; [`Model::from_json`] takes any library.
+impl<'de> Deserialize<'de> for Model {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let file = File::deserialize(deserializer)?;
+        Self::from_file(&file, &Library::builtin()).map_err(serde::de::Error::custom)
     }
 }
 

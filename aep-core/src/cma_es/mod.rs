@@ -1,0 +1,294 @@
+//! Covariance matrix adaptation, as a yardstick.
+
+mod distribution;
+
+use serde::{Deserialize, Serialize};
+
+use distribution::Distribution;
+
+use crate::random::{self, Purpose, Streams};
+use crate::{
+    Algorithm, Batch, Best, Border, CheckpointError, ConfigError, Domain, Method, Points, Scalar,
+    Start, TellError, checkpoint,
+};
+
+/// What happens when the distribution has converged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Restarts {
+    /// The run ends, [`crate::StopReason::Exhausted`].
+    Never,
+    /// It starts again at a random place with twice the population (IPOP, Auger & Hansen 2005).
+    DoublePopulation,
+}
+
+/// Covariance matrix adaptation evolution strategy, (`mu/mu_w`, lambda)-CMA-ES.
+///
+/// Each generation draws lambda positions from N(m, sigma^2 C), moves m to the weighted mean of the
+/// better half, and adapts C by the rank-one and rank-mu updates and sigma by cumulative step-size
+/// control, with the default constants of Hansen's tutorial (no negative weights). It works in
+/// search coordinates scaled to the domain's width; what leaves the domain is mirrored back into it
+/// before it is evaluated. The first generation is the same random population that the other
+/// algorithms start from; its best individual becomes m.
+///
+/// | setting | default | meaning |
+/// |---|---|---|
+/// | population | 0: 4 + 3 ln n | lambda |
+/// | `sigma` | 0.3 | first step size in widths of the domain |
+/// | [`Restarts`] | double the population | what happens on convergence |
+///
+/// **Limits.** n^2 memory and n^3 time per eigendecomposition: up to a few hundred components.
+///
+/// Reference: N. Hansen, "The CMA Evolution Strategy: A Tutorial", arXiv:1604.00772, 2016.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CmaEs {
+    /// Candidates of a generation; 0 for 4 + 3 ln n.
+    pub population: usize,
+    /// First step size in widths of the domain.
+    pub sigma: f64,
+    /// What happens on convergence.
+    pub restarts: Restarts,
+}
+
+impl Default for CmaEs {
+    fn default() -> Self {
+        Self { population: 0, sigma: 0.3, restarts: Restarts::DoublePopulation }
+    }
+}
+
+impl CmaEs {
+    /// The same with another population size.
+    #[must_use]
+    pub fn with_population(self, population: usize) -> Self {
+        Self { population, ..self }
+    }
+
+    /// The same with another first step size.
+    #[must_use]
+    pub fn with_sigma(self, sigma: f64) -> Self {
+        Self { sigma, ..self }
+    }
+
+    /// The same with another behaviour on convergence.
+    #[must_use]
+    pub fn with_restarts(self, restarts: Restarts) -> Self {
+        Self { restarts, ..self }
+    }
+}
+
+impl<T: Scalar> Method<T> for CmaEs {
+    fn name(&self) -> String {
+        "cma-es".into()
+    }
+
+    fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
+        let n = start.domain.dimension();
+        let usual = 4 + (3.0 * (n as f64).ln()) as usize;
+        let lambda = if self.population == 0 { usual } else { self.population };
+        let hint = "at least four candidates are needed (0 takes 4 + 3 ln n)";
+        ConfigError::require(lambda >= 4, "cma-es", "population", lambda as f64, hint)?;
+        let valid = self.sigma > 0.0 && self.sigma.is_finite();
+        let hint = "must be positive and finite";
+        ConfigError::require(valid, "cma-es", "sigma", self.sigma, hint)?;
+        let first = start.population(lambda)?;
+        let signature = crate::engine::signature("cma-es", start.domain, start.seed, lambda);
+        Ok(Box::new(Run {
+            config: self.clone(),
+            signature: format!("{signature}, {self:?}"),
+            domain: start.domain.clone(),
+            seed: start.seed,
+            points: Points::zeros(lambda, n),
+            genotypes: Vec::new(),
+            asked: false,
+            first,
+            state: State {
+                generation: 0,
+                distribution: None,
+                lambda,
+                best_position: vec![T::zero(); n],
+                best_cost: T::infinity(),
+                restarting: false,
+                exhausted: None,
+            },
+        }))
+    }
+}
+
+#[derive(Debug)]
+struct Run<T: Scalar> {
+    config: CmaEs,
+    signature: String,
+    domain: Domain<T>,
+    seed: u64,
+    /// The initial population, in search coordinates.
+    first: Points<T>,
+    /// What was asked, in problem coordinates.
+    points: Points<T>,
+    /// What was drawn, scaled to the domain's width, before mirroring.
+    genotypes: Vec<Vec<f64>>,
+    asked: bool,
+    state: State<T>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct State<T: Scalar> {
+    generation: u64,
+    /// None until the initial population has been evaluated.
+    distribution: Option<Distribution>,
+    lambda: usize,
+    best_position: Vec<T>,
+    best_cost: T,
+    /// Whether the next generation begins a new distribution.
+    restarting: bool,
+    exhausted: Option<String>,
+}
+
+impl<T: Scalar> Run<T> {
+    fn sample(&mut self) {
+        let n = self.domain.dimension();
+        let generation = self.state.generation + 1;
+        if self.state.restarting {
+            let streams = Streams::new(self.seed, Purpose::Individual, generation);
+            let mut rng = streams.stream(0);
+            let mean = (0..n).map(|_| random::uniform::<f64>(&mut rng)).collect();
+            let fresh = Distribution::new(mean, self.config.sigma, self.state.lambda);
+            self.state.distribution = Some(fresh);
+            self.state.restarting = false;
+        }
+        let Some(distribution) = &self.state.distribution else { return };
+        let streams = Streams::new(self.seed, Purpose::Mutation, generation);
+        self.genotypes =
+            (0..self.state.lambda).map(|i| distribution.sample(&mut streams.stream(i))).collect();
+        self.points = Points::zeros(self.state.lambda, n);
+        for (i, genotype) in self.genotypes.iter().enumerate() {
+            let search = phenotype(&self.domain, genotype);
+            self.domain.decode(&search, self.points.row_mut(i));
+        }
+    }
+
+    /// The first generation: its best individual is the first mean.
+    fn begin(&mut self, costs: &[T]) {
+        let best = (0..costs.len()).reduce(|a, b| if costs[b] < costs[a] { b } else { a });
+        let row = self.first.row(best.unwrap_or(0));
+        let mean = genotype(&self.domain, row);
+        let fresh = Distribution::new(mean, self.config.sigma, self.state.lambda);
+        self.state.distribution = Some(fresh);
+    }
+
+    fn note_best(&mut self, costs: &[T]) {
+        for (i, cost) in costs.iter().enumerate() {
+            if *cost < self.state.best_cost && cost.is_finite() {
+                self.state.best_cost = *cost;
+                self.state.best_position.copy_from_slice(self.points.row(i));
+            }
+        }
+    }
+
+    fn adapt(&mut self, costs: &[T]) {
+        let Some(distribution) = &mut self.state.distribution else { return };
+        let worst = f64::INFINITY;
+        let costs: Vec<f64> =
+            costs.iter().map(|c| if c.is_finite() { c.as_f64() } else { worst }).collect();
+        distribution.update(&self.genotypes, &costs);
+        let Some(why) = distribution.converged() else { return };
+        match self.config.restarts {
+            Restarts::Never => self.state.exhausted = Some(why.into()),
+            Restarts::DoublePopulation => {
+                self.state.lambda *= 2;
+                self.state.restarting = true;
+            }
+        }
+    }
+}
+
+/// Scaled to [0, 1] to search coordinates, mirrored into the domain.
+fn phenotype<T: Scalar>(domain: &Domain<T>, genotype: &[f64]) -> Vec<T> {
+    let limits = domain.search_lower().iter().zip(domain.search_upper());
+    let mirror = |g: f64| Border::Reflect.settle(g, 0.5, (0.0, 1.0), || 0.5);
+    let scaled = genotype
+        .iter()
+        .zip(limits)
+        .map(|(&g, (&lo, &hi))| (lo + (hi - lo) * T::of(mirror(g))).max(lo).min(hi));
+    scaled.collect()
+}
+
+/// Search coordinates scaled to [0, 1].
+fn genotype<T: Scalar>(domain: &Domain<T>, search: &[T]) -> Vec<f64> {
+    let limits = domain.search_lower().iter().zip(domain.search_upper());
+    search.iter().zip(limits).map(|(&u, (&lo, &hi))| ((u - lo) / (hi - lo)).as_f64()).collect()
+}
+
+impl<T: Scalar> Algorithm<T> for Run<T> {
+    fn name(&self) -> &'static str {
+        "cma-es"
+    }
+
+    fn signature(&self) -> String {
+        self.signature.clone()
+    }
+
+    fn domain(&self) -> &Domain<T> {
+        &self.domain
+    }
+
+    fn ask(&mut self) -> Batch<'_, T> {
+        if !self.asked {
+            if self.state.distribution.is_some() {
+                self.sample();
+            } else {
+                for i in 0..self.first.len() {
+                    self.domain.decode(self.first.row(i), self.points.row_mut(i));
+                }
+            }
+            self.asked = true;
+        }
+        self.points.batch()
+    }
+
+    fn tell(&mut self, costs: &[T]) -> Result<(), TellError> {
+        if !self.asked {
+            return Err(TellError::NotAsked);
+        }
+        if costs.len() != self.points.len() {
+            return Err(TellError::Count { found: costs.len(), expected: self.points.len() });
+        }
+        self.asked = false;
+        self.note_best(costs);
+        if self.state.distribution.is_some() {
+            self.adapt(costs);
+            self.state.generation += 1;
+        } else {
+            self.begin(costs);
+        }
+        Ok(())
+    }
+
+    fn best(&self) -> Option<Best<'_, T>> {
+        let state = &self.state;
+        let found = state.best_cost.is_finite();
+        found.then(|| Best { position: &state.best_position, cost: state.best_cost })
+    }
+
+    fn generation(&self) -> u64 {
+        self.state.generation
+    }
+
+    fn exhausted(&self) -> Option<&str> {
+        self.state.exhausted.as_deref()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CheckpointError> {
+        checkpoint::encode(&self.state)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), CheckpointError> {
+        let state: State<T> = checkpoint::decode(bytes)?;
+        if state.best_position.len() != self.domain.dimension() {
+            return Err(CheckpointError::Mismatch { what: "dimension" });
+        }
+        self.state = state;
+        self.asked = false;
+        Ok(())
+    }
+}

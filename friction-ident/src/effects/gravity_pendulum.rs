@@ -1,0 +1,61 @@
+//! Weight of a pendulum on a rotary axis.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::axis::Quantity;
+
+/// `M sin(q - q_0)`; `M` is mass times gravity times the distance of the centre of mass.
+#[derive(Clone, Copy, Debug)]
+pub struct GravityPendulum;
+
+static ABOUT: About = About {
+    name: "gravity-pendulum",
+    title: "weight of a pendulum",
+    equation: "M sin(q - q_0), M = m g l",
+    parameters: &[
+        Parameter::level("M", "torque at 90 degrees", Quantity::Force, 500.0, 25.0),
+        Parameter {
+            low: -3.2,
+            high: 3.2,
+            ..Parameter::shape(
+                "q_0",
+                "angle at which it hangs down",
+                Quantity::Angle,
+                (0.0, 1.0),
+                0.0,
+            )
+            .linear()
+        },
+    ],
+    slots: &[Slot::SmoothForce],
+    shows: "a sine of the angle, the same for both directions and at rest",
+    reference: "C. Huygens, Horologium oscillatorium, 1673",
+};
+
+impl Effect for GravityPendulum {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        let lanes = out.force.len();
+        let (torque, zero) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
+        let (angle, force) = (&m.position[..lanes], &mut out.force[..lanes]);
+        for i in 0..lanes {
+            force[i] += torque[i] * (angle[i] - zero[i]).sin();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, smooth};
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn the_torque_is_full_at_90_degrees_and_gone_hanging_down() {
+        let full = smooth(&GravityPendulum, &[0.5, 0.1], Point::at(0.1 + FRAC_PI_2, 0.0));
+        assert!((full.0 - 0.5).abs() < 1e-15);
+        assert_eq!(smooth(&GravityPendulum, &[0.5, 0.1], Point::at(0.1, 0.0)).0, 0.0);
+    }
+}

@@ -1,0 +1,52 @@
+//! A spring to the machine's base: cable chain, bellows, counterbalance.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::axis::Quantity;
+
+/// `k (x - x_0)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Spring;
+
+static ABOUT: About = About {
+    name: "spring",
+    title: "spring to the base",
+    equation: "k (x - x_0)",
+    parameters: &[
+        Parameter::level("k", "stiffness", Quantity::Stiffness, 1e5, 100.0),
+        Parameter {
+            low: -10.0,
+            ..Parameter::shape("x_0", "position without force", Quantity::Length, (0.0, 10.0), 0.0)
+                .linear()
+        },
+    ],
+    slots: &[Slot::SmoothForce],
+    shows: "residual against position, the same for both directions",
+    reference: "R. Hooke, De potentia restitutiva, 1678",
+};
+
+impl Effect for Spring {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        let lanes = out.force.len();
+        let (stiffness, zero) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
+        let (position, force) = (&m.position[..lanes], &mut out.force[..lanes]);
+        for i in 0..lanes {
+            force[i] += stiffness[i] * (position[i] - zero[i]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, smooth};
+    use super::*;
+
+    #[test]
+    fn the_force_is_proportional_to_the_way_from_its_zero() {
+        assert_eq!(smooth(&Spring, &[100.0, 0.25], Point::at(0.5, 1.0)), (25.0, 0.0));
+        assert_eq!(smooth(&Spring, &[100.0, 0.25], Point::at(0.25, -1.0)), (0.0, 0.0));
+    }
+}

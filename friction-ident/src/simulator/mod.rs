@@ -1,0 +1,28 @@
+//! Simulation of one or many plants: implicit in the set-valued friction, second order between events.
+//!
+//! # The step
+//! Over a step `r` the mean force decides: with the displacement `D = r (v + v1) / 2` the momentum
+//! balance is `m (v1 - v) = r (F - S - L d) - c (D - r v_p) - r (f0 + f1(D)) / 2`, where `F` is the
+//! drive's mean force, `S` and `c` the smooth forces and their slope at the predicted middle
+//! (`x + r v / 2`, `v_p`), `L d` the rigid friction and `f` the force of elastic elements. It is one
+//! equation for `D` with a left side that grows with `D`: one solution at any step, without energy
+//! from nowhere.
+//!
+//! * Position forces enter as in the leapfrog scheme, elastic elements as in the trapezoidal rule:
+//!   neither lets the energy of an oscillation grow.
+//! * Rigid friction is set-valued: a lane whose velocity would change sign is taken to `v = 0`
+//!   exactly, at the time where that happens, and decides there anew: it stays at rest while the
+//!   applied force is within the level, and slides off otherwise, in the rest of the same step.
+//! * With a pre-sliding contact the friction force is continuous and there is no event to locate.
+
+mod batch;
+mod error;
+mod run;
+mod scratch;
+
+pub use batch::{Batch, Start};
+pub use error::SimulationError;
+pub use run::{DEFAULT_MAX_STEP, Input, Trajectory, simulate};
+
+#[cfg(test)]
+mod tests;

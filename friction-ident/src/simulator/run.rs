@@ -1,0 +1,127 @@
+//! One plant under a recorded input.
+
+use missing_physics::Hold;
+
+use super::{Batch, SimulationError, Start};
+use crate::model::Model;
+
+/// Longest step, s, unless another is asked for. Sample intervals are divided to stay below.
+pub const DEFAULT_MAX_STEP: f64 = 1e-3;
+
+/// A recorded command.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// Times, s, increasing; the spacing may be irregular.
+    pub time: &'a [f64],
+    /// Command at each time, N or N m.
+    pub force: &'a [f64],
+    /// What the command does between two times.
+    pub hold: Hold,
+    /// Longest step, s.
+    pub max_step: f64,
+}
+
+impl<'a> Input<'a> {
+    /// An input with the default step.
+    pub fn new(time: &'a [f64], force: &'a [f64], hold: Hold) -> Self {
+        Self { time, force, hold, max_step: DEFAULT_MAX_STEP }
+    }
+
+    /// The same with steps of at most `max_step`, s.
+    #[must_use]
+    pub fn with_max_step(mut self, max_step: f64) -> Self {
+        self.max_step = max_step;
+        self
+    }
+
+    /// Checks lengths, times and step.
+    pub(crate) fn check(&self) -> Result<(), SimulationError> {
+        let (samples, values) = (self.time.len(), self.force.len());
+        if samples != values {
+            return Err(SimulationError::Length { samples, values });
+        }
+        if self.max_step.is_nan() || self.max_step <= 0.0 {
+            let (name, value) = ("the longest step", self.max_step);
+            return Err(SimulationError::Setting { name, value, need: "it must be above 0 s" });
+        }
+        for (k, pair) in self.time.windows(2).enumerate() {
+            let (before, after) = (pair[0], pair[1]);
+            if before.is_nan() || after.is_nan() || after <= before {
+                return Err(SimulationError::Time { index: k + 1, before, after });
+            }
+        }
+        Ok(())
+    }
+
+    /// Number and length of the steps from sample `k` to the next.
+    pub(crate) fn steps(&self, k: usize) -> (usize, f64) {
+        let interval = self.time[k + 1] - self.time[k];
+        // An interval that exceeds the longest step by rounding alone is one step.
+        let steps = (interval / self.max_step - 1e-6).ceil().max(1.0);
+        (steps as usize, interval / steps)
+    }
+
+    /// Mean command of step `j` of `steps` after sample `k`.
+    pub(crate) fn mean(&self, k: usize, j: usize, steps: usize) -> f64 {
+        match self.hold {
+            Hold::ZeroOrder => self.force[k],
+            Hold::Sampled => {
+                let middle = (j as f64 + 0.5) / steps as f64;
+                self.force[k] + middle * (self.force[k + 1] - self.force[k])
+            }
+        }
+    }
+}
+
+/// A simulated motion, one value per time of the input.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    /// Position, m or rad.
+    pub position: Vec<f64>,
+    /// Velocity, m/s or rad/s.
+    pub velocity: Vec<f64>,
+    /// Mean force of the drive on the mass in the step before, N or N m.
+    pub drive_force: Vec<f64>,
+}
+
+/// Simulates `model` under `input` from `start`.
+///
+/// # Errors
+/// The input does not make sense, or the state leaves the finite numbers.
+pub fn simulate(
+    model: &Model,
+    input: &Input<'_>,
+    start: &Start,
+) -> Result<Trajectory, SimulationError> {
+    input.check()?;
+    let mut batch = Batch::new(std::slice::from_ref(model))?;
+    let samples = input.time.len();
+    let mut out = Trajectory {
+        position: Vec::with_capacity(samples),
+        velocity: Vec::with_capacity(samples),
+        drive_force: Vec::with_capacity(samples),
+    };
+    let Some(first) = input.time.first() else { return Ok(out) };
+    batch.start(0, &Start { time: *first, ..*start });
+    out.push(&batch, start.command);
+    for k in 0..samples - 1 {
+        let (steps, duration) = input.steps(k);
+        for j in 0..steps {
+            batch.step(&[duration], &[input.mean(k, j, steps)]);
+        }
+        if !(batch.position()[0].is_finite() && batch.velocity()[0].is_finite()) {
+            let effect = batch.culprit(0);
+            return Err(SimulationError::NotFinite { time: input.time[k + 1], effect });
+        }
+        out.push(&batch, batch.drive_force()[0]);
+    }
+    Ok(out)
+}
+
+impl Trajectory {
+    fn push(&mut self, batch: &Batch, force: f64) {
+        self.position.push(batch.position()[0]);
+        self.velocity.push(batch.velocity()[0]);
+        self.drive_force.push(force);
+    }
+}
