@@ -35,6 +35,8 @@ commands! {
     Compare(compare),
     Suggest(suggest),
     Extend(extend),
+    Simulate(simulate),
+    Challenge(challenge),
     Effects(effects),
 }
 

@@ -52,7 +52,7 @@ impl Failure {
     }
 
     /// The first line says what, the others how to mend it.
-    fn from_lines(text: &str) -> Self {
+    pub fn from_lines(text: &str) -> Self {
         let (what, hint) = text.split_once('\n').unwrap_or((text, ""));
         let failure = Self::bad_input(what);
         if hint.is_empty() { failure } else { failure.with_hint(hint) }

@@ -1,5 +1,6 @@
 //! What the user sees: text on standard output, errors on standard error, files.
 
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -16,7 +17,7 @@ mod table;
 
 pub use check::data_check;
 pub use discovery::{Columns, ladder, parameters, ranking, regimes, verdict, where_it_fails};
-pub use style::{bold, dim, heading, paint};
+pub use style::{bold, dim, heading};
 pub use table::{Align, Table};
 
 /// Prints to standard output; without colours where nobody would see them.
@@ -38,7 +39,8 @@ pub fn error(failure: &Failure) {
         text.push_str(&format_lines("  ", place));
     }
     if let Some(hint) = &failure.hint {
-        text.push_str(&format!("{blue}hint:{blue:#} {}\n", hint.replace('\n', "\n      ")));
+        let hint = hint.replace('\n', "\n      ");
+        let _ = writeln!(text, "{blue}hint:{blue:#} {hint}");
     }
     // Where standard error is closed, nobody is left to tell.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());

@@ -16,8 +16,11 @@ use missing_physics::{
 
 use crate::failure::Failure;
 
+/// A name and what makes the optimizer.
+type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
+
 /// Optimizers by name.
-pub const ALGORITHMS: &[(&str, fn() -> Box<dyn Method<f64>>)] =
+pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
 
 /// The model family of a recording.
@@ -74,8 +77,13 @@ pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> 
     if model.axis() == family.axis() {
         return Ok(());
     }
+    Err(other_axis())
+}
+
+/// The failure of a model and data that do not belong together.
+pub fn other_axis() -> Failure {
     let what = "one of model and data is of a linear axis, the other of a rotary one";
-    Err(Failure::bad_input(what).with_hint("identify a model on this data with 'aep identify'"))
+    Failure::bad_input(what).with_hint("identify a model on this data with 'aep identify'")
 }
 
 /// A fit as a rung: its parameters and errors.

@@ -99,8 +99,8 @@ impl MappingArgs {
 /// A measurement that has to be given.
 #[derive(clap::Args, Clone, Debug)]
 pub struct DataArgs {
-    /// The measurement: CSV with time_s,force_N,position_m (rotary: torque_Nm,angle_rad), or MATLAB
-    /// v5/v7. Names, units and gains may also stand in DATA.toml beside it.
+    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
+    /// MATLAB v5/v7. Names, units and gains may also stand in DATA.toml beside it.
     #[arg(value_name = "DATA")]
     path: PathBuf,
     #[command(flatten)]

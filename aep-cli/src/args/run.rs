@@ -67,10 +67,10 @@ impl OutputArgs {
 
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "it must be a number of seconds".to_owned())?;
-    if !(seconds > 0.0) {
-        return Err("it must be above 0 s".to_owned());
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(limit) if !limit.is_zero() => Ok(limit),
+        _ => Err("it must be a number of seconds above 0".to_owned()),
     }
-    Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())
 }
 
 fn rate(text: &str) -> Result<f64, String> {

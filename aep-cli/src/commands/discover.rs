@@ -21,8 +21,8 @@ use crate::steps;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The measurement: CSV with time_s,force_N,position_m (rotary: torque_Nm,angle_rad), or MATLAB
-    /// v5/v7; without it, the example that comes with the program. Names, units and gains may also
+    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
+    /// MATLAB v5/v7; without it, the example that comes with the program. Names, units and gains may also
     /// stand in DATA.toml beside it
     #[arg(value_name = "DATA")]
     data: Option<PathBuf>,

@@ -64,9 +64,9 @@ pub fn ladder(discovery: &Discovery) -> String {
     let largest = largest.map(|error| error.validation).fold(f64::MIN_POSITIVE, f64::max);
     let headings: Vec<String> = names
         .iter()
-        .map(|name| match name.is_relative() {
-            true => format!("{} error", name.quantity),
-            false => format!("{} rms", name.quantity),
+        .map(|name| {
+            let kind = if name.is_relative() { "error" } else { "rms" };
+            format!("{} {kind}", name.quantity)
         })
         .collect();
     let mut columns = vec![("rung", Align::Left), ("", Align::Bar)];

@@ -1,6 +1,8 @@
 //! Tables: a heading, a line, rows; numbers to the right.
 
-use comfy_table::{Cell, CellAlignment, Color, ContentArrangement, TableComponent};
+use comfy_table::{
+    Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, TableStyle,
+};
 
 /// Where the cells of a column stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +21,9 @@ pub struct Table {
     columns: Vec<Align>,
 }
 
+/// A line under the headings and nothing else.
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 /// Width of a table where there is no terminal to ask.
 const WIDTH: u16 = 110;
 
@@ -26,9 +31,7 @@ impl Table {
     /// A table with these headings.
     pub fn new(headings: &[(&str, Align)]) -> Self {
         let mut table = comfy_table::Table::new();
-        table.load_preset(comfy_table::presets::NOTHING);
-        table.set_style(TableComponent::HeaderLines, '─');
-        table.set_style(TableComponent::MiddleHeaderIntersections, '─');
+        table.load_style(STYLE);
         table.set_content_arrangement(ContentArrangement::Dynamic);
         table.enforce_styling();
         if !table.is_tty() {
@@ -36,9 +39,7 @@ impl Table {
         }
         let columns: Vec<Align> = headings.iter().map(|(_, align)| *align).collect();
         table.set_header(headings.iter().map(|(text, align)| {
-            Cell::new(text)
-                .set_alignment(alignment(*align))
-                .add_attribute(comfy_table::Attribute::Dim)
+            Cell::new(text).set_alignment(alignment(*align)).add_attribute(Attribute::Dim)
         }));
         Self { table, columns }
     }
