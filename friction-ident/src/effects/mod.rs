@@ -24,6 +24,8 @@ pub mod viscous;
 #[cfg(test)]
 mod testing;
 
+use crate::axis::Axis;
+
 pub use about::{About, Parameter, Role, Scale, Slot};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
@@ -38,6 +40,12 @@ pub trait Effect: Sync + Send {
     /// Other forms of the same law, named `effect:form`.
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &[]
+    }
+
+    /// Whether the effect exists on this kind of axis. It decides what is tried, not what a model
+    /// may have.
+    fn suits(&self, _axis: Axis) -> bool {
+        true
     }
 
     /// Slot [`Slot::SmoothForce`]: adds the force that resists the motion.

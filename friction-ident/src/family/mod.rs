@@ -63,7 +63,8 @@ impl FrictionFamily {
             .position
             .iter()
             .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
-        let effects = options.library.effects().to_vec();
+        let all = options.library.effects().iter().copied();
+        let effects: Vec<_> = all.filter(|effect| effect.suits(axis)).collect();
         let limits = limits::Limits::of(&prepared, axis, stroke);
         let mut terms = vec![limits.mass()];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
