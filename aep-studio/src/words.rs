@@ -82,8 +82,9 @@ pub fn floor(discovery: &Discovery, name: &ErrorName) -> Option<f64> {
 }
 
 /// The verdict in two or three words.
-pub fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
+pub fn verdict(discovery: &Discovery) -> &'static str {
+    match discovery.verdict {
+        Verdict::EffectsFound if discovery.added.len() > 1 => "Missing effects found",
         Verdict::EffectsFound => "Missing effect found",
         Verdict::NothingMissing => "Nothing is missing",
         Verdict::Unexplained => "Unexplained structure",

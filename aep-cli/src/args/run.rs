@@ -17,10 +17,10 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// Begin nothing new after this many seconds; what was found is kept
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
     time_limit: Option<Duration>,
     /// False-alarm rate of a screening: the largest p-value at which an effect is added
-    #[arg(long, value_name = "P", default_value = "0.05", value_parser = rate)]
+    #[arg(long, value_name = "P", default_value = "0.05", allow_negative_numbers = true, value_parser = rate)]
     alpha: f64,
     /// Most effects to add
     #[arg(long, value_name = "N", default_value_t = 8)]

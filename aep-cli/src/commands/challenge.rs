@@ -36,6 +36,9 @@ Examples:
   aep challenge --hide stribeck --size faint --seed 3 -o faint
   aep challenge --hide nothing --seed 4 -o control";
 
+/// Digits of a recorded number: far below noise and counts.
+const DIGITS: usize = 8;
+
 /// Size of the hidden effect against the noise.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Size {
@@ -78,7 +81,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     })?;
     let [data, mapping, truth] =
         ["recording.csv", "recording.toml", "truth.json"].map(|name| folder.join(name));
-    output::save(&data, &aep_data::to_csv(&challenge.recording))?;
+    output::save(&data, &aep_data::to_csv_rounded(&challenge.recording, DIGITS))?;
     output::save(&mapping, &aep_data::to_toml(&challenge.recording))?;
     output::save_json(&truth, &challenge.truth)?;
     if global.quiet {

@@ -12,6 +12,8 @@ use super::bars::bar;
 use super::style::{dim, paint};
 use super::table::{Align, Table};
 
+/// From this p-value on a dependence may well be chance.
+const CHANCE: f64 = 0.05;
 /// Width of the bars.
 const BAR: usize = 16;
 
@@ -21,7 +23,7 @@ pub fn verdict(discovery: &Discovery) -> String {
         Verdict::EffectsFound | Verdict::NothingMissing => AnsiColor::Green,
         Verdict::Unexplained | Verdict::Ambiguous => AnsiColor::Yellow,
     };
-    let mut title = words::verdict(discovery.verdict).to_uppercase();
+    let mut title = words::verdict(discovery).to_uppercase();
     if !discovery.added.is_empty() {
         let _ = write!(title, ": {}", discovery.added.join(", "));
     }
@@ -127,10 +129,19 @@ pub fn regimes(regimes: &[RegimeShare]) -> String {
     table.text()
 }
 
-/// What the error depends on.
+/// What the error depends on; what may well be chance is only counted.
 pub fn where_it_fails(places: &[Where]) -> String {
-    if places.is_empty() {
-        return String::new();
+    const MOST: usize = 6;
+    let likely: Vec<&Where> = places.iter().filter(|p| p.p_value <= CHANCE).take(MOST).collect();
+    let rest = places.len() - likely.len();
+    let others = |text: String| match rest {
+        0 => text,
+        rest => {
+            text + &format!(" {}\n", dim(&format!("{rest} other coordinates show less or nothing")))
+        }
+    };
+    if likely.is_empty() {
+        return others(String::new());
     }
     let mut table = Table::new(&[
         ("depends on", Align::Left),
@@ -139,7 +150,7 @@ pub fn where_it_fails(places: &[Where]) -> String {
         ("p-value", Align::Right),
         ("", Align::Left),
     ]);
-    for place in places {
+    for place in likely {
         table.row([
             place.coordinate.clone(),
             bar(place.share, BAR),
@@ -148,7 +159,7 @@ pub fn where_it_fails(places: &[Where]) -> String {
             place.note.clone(),
         ]);
     }
-    table.text()
+    others(table.text())
 }
 
 /// How many candidates are shown.
@@ -180,7 +191,7 @@ pub fn ranking(candidates: &[Candidate], columns: Columns) -> String {
             bar(candidate.gain, BAR),
             percent(candidate.gain),
             words::p_value(candidate.p_value),
-            candidate.size.clone(),
+            shortened(&candidate.size),
         ]);
     }
     let mut text = table.text();
@@ -189,6 +200,17 @@ pub fn ranking(candidates: &[Candidate], columns: Columns) -> String {
         let _ = writeln!(text, " {}", dim(&format!("and {rest} more that gain less")));
     }
     text
+}
+
+/// A size of many numbers fits on a line; the page and the JSON have all of it.
+fn shortened(size: &str) -> String {
+    const MOST: usize = 46;
+    if size.chars().count() <= MOST {
+        return size.to_owned();
+    }
+    let start: String = size.chars().take(MOST).collect();
+    let end = start.rfind(", ").unwrap_or(start.len());
+    format!("{}, ...", &start[..end])
 }
 
 /// The parameters of a rung with their intervals.

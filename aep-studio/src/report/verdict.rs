@@ -35,7 +35,7 @@ pub(super) fn plain_head(discovery: &Discovery, source: &Source) -> String {
 }
 
 fn headline(discovery: &Discovery) -> String {
-    let verdict = words::verdict(discovery.verdict);
+    let verdict = words::verdict(discovery);
     if discovery.added.is_empty() {
         return escape(verdict);
     }

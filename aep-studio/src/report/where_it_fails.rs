@@ -10,6 +10,9 @@ use crate::words;
 const LEAD: &str = "The error of the base model before anything was added, and what the last \
     model leaves. A low p-value says that the error depends on the coordinate for more than chance.";
 
+/// From this p-value on a dependence may well be chance.
+const CHANCE: f64 = 0.05;
+
 /// The section of where it fails.
 pub(super) fn section(discovery: &Discovery) -> String {
     let base = column("Base model", &discovery.regimes_base, &discovery.where_base);
@@ -56,13 +59,24 @@ fn shares(regimes: &[RegimeShare]) -> String {
 }
 
 fn dependences(places: &[Where]) -> String {
+    let (likely, others): (Vec<&Where>, Vec<&Where>) =
+        places.iter().partition(|place| place.p_value <= CHANCE);
+    let others = if others.is_empty() {
+        String::new()
+    } else {
+        format!("<details><summary>It may be chance</summary>{}</details>", listed(&others))
+    };
+    listed(&likely) + &others
+}
+
+fn listed(places: &[&Where]) -> String {
     if places.is_empty() {
         return String::new();
     }
     let rows: Vec<Vec<String>> = places
         .iter()
         .map(|place| {
-            let class = if place.p_value <= 0.05 { "held" } else { "quiet" };
+            let class = if place.p_value <= CHANCE { "held" } else { "quiet" };
             vec![
                 format!("{}<small>{}</small>", escape(&place.coordinate), escape(&place.note)),
                 bar(place.share, class),
