@@ -51,11 +51,15 @@ pub fn report<F: ModelFamily + ?Sized>(
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
 
     let left = split.rms(&evidence.last.residual).validation;
-    let structure = evidence
-        .where_last
-        .iter()
-        .find(|place| place.p_value <= STRUCTURE.0 && place.share >= STRUCTURE.1)
-        .filter(|_| left > ABOVE_FLOOR * floor);
+    let structure = evidence.where_last.iter().find(|place| {
+        let strong = place.p_value <= STRUCTURE.0 && place.share >= STRUCTURE.1;
+        // The floor compares equal states: what changes with time is part of it.
+        let in_time = family
+            .coordinates()
+            .iter()
+            .any(|c| c.name == place.coordinate && where_it_fails::only_grows(c));
+        strong && (in_time || left > ABOVE_FLOOR * floor)
+    });
     let verdict = match (added.is_empty(), ambiguous.is_empty(), structure) {
         (false, false, _) => Verdict::Ambiguous,
         (false, true, _) => Verdict::EffectsFound,

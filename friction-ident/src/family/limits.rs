@@ -7,10 +7,11 @@ use super::preparation::Prepared;
 use crate::axis::{Axis, Quantity};
 use crate::effects::{self, About};
 
-/// Most trial periods of a ripple: down to 1/350 of the stroke. Finer ones are not looked for.
-const MOST_PERIODS: usize = 500;
-/// Spacing of trial periods in spatial frequency times stroke. A line is 1 wide.
-const LINE_WIDTH: f64 = 0.7;
+/// Most trial periods of a ripple: down to 1/280 of the stroke. Finer ones are not looked for.
+const MOST_PERIODS: usize = 700;
+/// Spacing of trial periods in spatial frequency times stroke. A line is 1
+/// wide, one of the second harmonic half as much.
+const LINE_WIDTH: f64 = 0.4;
 
 /// Sizes of the recording.
 pub struct Limits {

@@ -8,13 +8,15 @@ mod filter;
 mod limits;
 mod plots;
 mod preparation;
+mod views;
 mod words;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use missing_physics::basis::{dot, gram, solve};
-use missing_physics::report::Plot;
+use missing_physics::report::{Plot, SplitError};
+use missing_physics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
 
 pub use preparation::{PreparationError, Prepared};
@@ -36,6 +38,7 @@ pub struct Options {
 
 /// See the module.
 pub struct FrictionFamily {
+    recording: Recording,
     prepared: Prepared,
     axis: Axis,
     effects: Vec<&'static dyn Effect>,
@@ -71,6 +74,7 @@ impl FrictionFamily {
         let coordinates = coordinates::coordinates(&prepared, axis, recording);
         let regimes = coordinates::regimes(&prepared);
         let mut family = Self {
+            recording: recording.clone(),
             axis,
             effects,
             terms,
@@ -301,6 +305,13 @@ impl ModelFamily for FrictionFamily {
 
     fn blocks(&self) -> Vec<Range<usize>> {
         self.blocks.clone()
+    }
+
+    fn views(&self, fitted: &Fitted, split: &Split) -> BTreeMap<String, SplitError> {
+        self.model(fitted).map_or_else(
+            |_| BTreeMap::new(),
+            |model| views::views(&model, &self.recording, &self.time, split),
+        )
     }
 
     fn noise(&self) -> BTreeMap<String, f64> {
