@@ -7,6 +7,7 @@ use aep_data::{Loaded, Mapping, parse};
 use crate::failure::Failure;
 
 const NAME: &str = "examples/hidden/recording.csv";
+const TRUTH: &str = "examples/hidden/truth.json";
 const RECORDING: &[u8] = include_bytes!("../../examples/hidden/recording.csv");
 const MAPPING: &str = include_str!("../../examples/hidden/recording.toml");
 
@@ -20,8 +21,10 @@ pub fn load() -> Result<Loaded, Failure> {
 /// What to do next.
 pub fn next() -> String {
     format!(
-        "\nWhat was hidden stands in {}, which was not read: look whether it was found.\n\
-         Your own data: aep discover run.csv (time_s,force_N,position_m)\n",
-        "examples/hidden/truth.json"
+        "\nWas it right? The truth stands in {TRUTH}, which was not read:\n\
+         \x20 cat {TRUTH}\n\
+         With plots:      aep discover --html report.html\n\
+         Another riddle:  aep challenge --hide random --seed 7 -o riddle\n\
+         Your own data:   aep discover run.csv       (columns time_s,force_N,position_m)\n"
     )
 }

@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 
 use crate::basis::dot;
+use crate::quantity::quantity;
 
 /// Number of trial frequencies, half a line width apart.
 const FREQUENCIES: usize = 160;
@@ -38,7 +39,8 @@ impl Structure {
         match self {
             Self::Step { time, height } => format!("a step of {height:+.3} {unit} at {time:.2} s"),
             Self::Sine { period, amplitude } => {
-                format!("a swing of {amplitude:.3} {unit} with a period of {period:.3} s")
+                let (amplitude, period) = (quantity(*amplitude, unit), quantity(*period, "s"));
+                format!("a swing of {amplitude} with a period of {period}")
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::family::{Coordinate, ModelFamily};
 use crate::fit::Fit;
 use crate::ladder::{self, Ladder};
 use crate::noise;
+use crate::quantity::quantity;
 use crate::report::{Curve, Discovery, Plot, Verdict, Where};
 use crate::screen::Screened;
 use crate::shapes::amplitudes;
@@ -145,7 +146,7 @@ fn limits<F: ModelFamily + ?Sized>(
             let term = &family.terms()[candidate.term];
             let amplitude = amplitudes(term).first().copied()?;
             let size = (candidate.needed.max(0.0) * square / candidate.leverage).sqrt();
-            let words = format!("{} {size:.3} {}", amplitude.name, amplitude.unit);
+            let words = format!("{} {}", amplitude.name, quantity(size, &amplitude.unit));
             Some((term.name.clone(), words))
         })
         .collect()

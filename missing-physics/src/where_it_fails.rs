@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use crate::family::{Coordinate, ModelFamily};
 use crate::in_time::Trials;
 use crate::placebo;
+use crate::quantity::quantity;
 use crate::report::{RegimeShare, Where};
 
 /// Bins along a coordinate, each with the same number of points.
@@ -193,10 +194,9 @@ impl Bins {
             .max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()));
         let Some(bin) = worst else { return String::new() };
         let opposes = if coordinate.parity.is_some() { " against the motion" } else { "" };
-        format!(
-            "largest mean error {:+.3} {unit}{opposes} near {:.4} {}",
-            means[bin], at[bin], coordinate.unit
-        )
+        let sign = if means[bin] > 0.0 { "+" } else { "" };
+        let (size, place) = (quantity(means[bin], unit), quantity(at[bin], &coordinate.unit));
+        format!("largest mean error {sign}{size}{opposes} near {place}")
     }
 }
 

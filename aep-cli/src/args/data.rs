@@ -108,6 +108,11 @@ pub struct DataArgs {
 }
 
 impl DataArgs {
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Reads it.
     pub fn read(&self) -> Result<Loaded, Failure> {
         self.mapping.read(&self.path)

@@ -22,7 +22,7 @@ pub struct Args {
     /// The model, as written by identify, extend or discover
     #[arg(long, value_name = "MODEL.json")]
     model: PathBuf,
-    /// Bandwidth of the comparison in Hz; by default 4 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Seed of the placebos behind the p-values

@@ -1,8 +1,7 @@
 //! `aep discover`: the main job.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use aep_data::Loaded;
 use missing_physics::data_check::check;
 use missing_physics::{Discovery, discover};
 
@@ -32,7 +31,7 @@ pub struct Args {
     /// Write the last model
     #[arg(long, short = 'o', value_name = "MODEL.json")]
     output: Option<PathBuf>,
-    /// Bandwidth of the comparison in Hz; by default 4 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     #[command(flatten)]
@@ -79,14 +78,15 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if quiet {
         return Ok(());
     }
-    let next = if args.data.is_some() { next(args, &loaded) } else { crate::example::next() };
-    output::print(&(story(&discovery) + "\n" + &files + &next))
+    let next = args.data.as_deref().map_or_else(crate::example::next, |path| next(args, path));
+    let files = if files.is_empty() { files } else { format!("\n{files}") };
+    output::print(&(story(&discovery) + &files + &next))
 }
 
 fn save_model(
     family: &friction_ident::family::FrictionFamily,
     discovery: &Discovery,
-    path: &std::path::Path,
+    path: &Path,
 ) -> Result<String, Failure> {
     let Some(last) = discovery.ladder.last() else {
         return Ok(String::new());
@@ -127,10 +127,10 @@ fn story(discovery: &Discovery) -> String {
     text + &output::verdict(discovery)
 }
 
-fn next(args: &Args, loaded: &Loaded) -> String {
+fn next(args: &Args, path: &Path) -> String {
     if args.results.html.is_some() {
         return String::new();
     }
-    let name = loaded.recording.name();
-    output::dim(&format!("aep discover {name} --html report.html   shows all this with plots")) + "\n"
+    let command = format!("aep discover {} --html report.html", path.display());
+    format!("\n{}\n", output::dim(&format!("All this with plots: {command}")))
 }

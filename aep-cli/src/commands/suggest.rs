@@ -25,7 +25,7 @@ pub struct Args {
     /// The model, as written by identify, extend or discover
     #[arg(long, value_name = "MODEL.json")]
     model: PathBuf,
-    /// Bandwidth of the comparison in Hz; by default 4 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     #[command(flatten)]
@@ -65,7 +65,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let next = match likely {
         Some(best) => format!(
             "Try it: aep extend {} --model {} --add {} -o better.json\n",
-            loaded.recording.name(),
+            args.data.path().display(),
             args.model.display(),
             best.effect
         ),

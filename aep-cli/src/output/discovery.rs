@@ -14,8 +14,10 @@ use super::table::{Align, Table};
 
 /// From this p-value on a dependence may well be chance.
 const CHANCE: f64 = 0.05;
+/// How the notes of most coordinates begin.
+const MEAN_ERROR: &str = "largest mean error";
 /// Width of the bars.
-const BAR: usize = 16;
+const BAR: usize = 12;
 
 /// The verdict and its summary.
 pub fn verdict(discovery: &Discovery) -> String {
@@ -146,9 +148,9 @@ pub fn where_it_fails(places: &[Where]) -> String {
     let mut table = Table::new(&[
         ("depends on", Align::Left),
         ("", Align::Bar),
-        ("of the error", Align::Right),
+        ("share", Align::Right),
         ("p-value", Align::Right),
-        ("", Align::Left),
+        (MEAN_ERROR, Align::Left),
     ]);
     for place in likely {
         table.row([
@@ -156,7 +158,8 @@ pub fn where_it_fails(places: &[Where]) -> String {
             bar(place.share, BAR),
             percent(place.share),
             words::p_value(place.p_value),
-            place.note.clone(),
+            // The heading says it once for all.
+            place.note.strip_prefix(MEAN_ERROR).unwrap_or(&place.note).trim().to_owned(),
         ]);
     }
     others(table.text())
