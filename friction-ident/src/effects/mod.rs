@@ -17,6 +17,7 @@ pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
 pub mod ripple;
+pub mod shear_thinning;
 pub mod spring;
 pub mod stribeck;
 pub mod viscous;
@@ -155,6 +156,7 @@ pub static ALL: &[&dyn Effect] = &[
     &spring::Spring,
     &gravity_pendulum::GravityPendulum,
     &quadratic_drag::QuadraticDrag,
+    &shear_thinning::ShearThinning,
     &actuator_lag::ActuatorLag,
 ];
 
