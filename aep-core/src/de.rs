@@ -86,7 +86,10 @@ impl De {
 
 impl<T: Scalar> Method<T> for De {
     fn name(&self) -> String {
-        "de".into()
+        match self.control {
+            Control::SelfAdaptive => "de".into(),
+            Control::Fixed { .. } => "de-fixed".into(),
+        }
     }
 
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {

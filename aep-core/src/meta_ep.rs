@@ -160,7 +160,8 @@ impl MetaEp {
 
 impl<T: Scalar> Method<T> for MetaEp {
     fn name(&self) -> String {
-        if *self == Self::practical() { "meta-ep-practical".into() } else { "meta-ep".into() }
+        let practical = *self == Self::practical().with_population(self.population);
+        if practical { "meta-ep-practical".into() } else { "meta-ep".into() }
     }
 
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
