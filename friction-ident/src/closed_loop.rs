@@ -8,7 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::axis::Quantity;
 use crate::model::Model;
 use crate::reference::Reference;
-use crate::simulator::{Batch, SimulationError, Start};
+use crate::simulator::{Plants, SimulationError, Start};
 
 /// What a closed loop consists of besides plant, reference and controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,7 +143,7 @@ pub fn closed_loop(
     controller: &mut dyn Controller,
     setup: &Setup,
 ) -> Result<Run, ClosedLoopError> {
-    let mut batch = Batch::new(std::slice::from_ref(model))?;
+    let mut batch = Plants::new(std::slice::from_ref(model))?;
     let first = reference.position.first().copied().unwrap_or(0.0);
     batch.start(0, &Start::at(first, 0.0));
     let samples = reference.position.len();

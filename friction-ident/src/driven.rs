@@ -14,6 +14,8 @@ use crate::model::{MASS, Model, Term, address};
 /// Samples that go through the hooks at once: large enough to hide the calls, small enough for the
 /// first-level cache.
 const BLOCK: usize = 128;
+/// Samples over which the load of a contact at the start of a segment is averaged.
+const STARTING: usize = 5;
 
 /// Channels of a motion that do not fit together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -112,7 +114,7 @@ fn check(channel: &'static str, values: &[f64], time: &[f64]) -> Result<(), Moti
 /// The force that the drive must command for `model` to follow `motion`, N or N m.
 pub fn force_along(model: &Model, motion: &MeasuredMotion<'_>) -> Vec<f64> {
     let walk = Walk::new(model, motion);
-    let mut force = walk.smooth_force(model.terms());
+    let mut force = walk.smooth.clone();
     for ((force, friction), a) in force.iter_mut().zip(&walk.friction).zip(motion.acceleration) {
         *force += friction + model.mass() * a;
     }
@@ -163,6 +165,9 @@ struct Walk<'a> {
     dwell: Vec<f64>,
     bond: Vec<f64>,
     drive_force: Cow<'a, [f64]>,
+    /// Force of everything smooth.
+    smooth: Vec<f64>,
+    mass: f64,
     /// Friction force.
     friction: Vec<f64>,
     /// Utilisation of the friction level, -1..1.
@@ -182,10 +187,13 @@ impl<'a> Walk<'a> {
             dwell: vec![0.0; samples],
             bond: vec![1.0; samples],
             drive_force,
+            smooth: Vec::new(),
+            mass: model.mass(),
             friction: Vec::new(),
             used: Vec::new(),
             attached: Vec::new(),
         };
+        walk.smooth = walk.smooth_force(model.terms());
         let level = walk.friction_level(model.terms());
         walk.slide(model, &level);
         for term in model.terms().iter().filter(|t| t.effect().about().acts_on(Slot::Attached)) {
@@ -217,12 +225,29 @@ impl<'a> Walk<'a> {
         let mut state = vec![0.0; element.states()];
         for segment in self.motion.segments.iter().filter(|segment| !segment.is_empty()) {
             let path = self.path(segment, level);
-            let first = self.direction[segment.clone()].iter().find(|d| **d != 0.0);
             let level = level[segment.start];
-            element.start(term.values(), level, first.copied().unwrap_or(0.0), &mut state);
+            let used = self.used_at_start(segment, level);
+            element.start(term.values(), level, used, &mut state);
             element.along(term.values(), &path, &mut state, &mut force[segment.clone()]);
         }
         force
+    }
+
+    /// Utilisation of the friction level at the start of a segment. A contact that starts at rest and
+    /// never slides keeps its first load for ever, so that it matters: at rest it carries what the
+    /// drive, less the inertia, puts on it.
+    fn used_at_start(&self, segment: &Range<usize>, level: f64) -> f64 {
+        let first = self.direction[segment.clone()].iter().find(|d| **d != 0.0);
+        let sliding = first.copied().unwrap_or(0.0);
+        if self.motion.drive_force.is_none() || level <= 0.0 {
+            return sliding;
+        }
+        let window = segment.start..segment.end.min(segment.start + STARTING);
+        let count = window.len() as f64;
+        let load = |k: usize| {
+            self.drive_force[k] - self.smooth[k] - self.mass * self.motion.acceleration[k]
+        };
+        (window.map(load).sum::<f64>() / count / level).clamp(-1.0, 1.0)
     }
 
     /// Duration, displacement and level of the step to each sample.

@@ -24,6 +24,7 @@ pub mod family;
 pub mod model;
 pub mod reference;
 pub mod simulator;
+pub mod windows;
 
 mod signal;
 
@@ -34,4 +35,5 @@ pub use driven::{Columns, MeasuredMotion, MotionError, columns_along, force_alon
 pub use effects::{Effect, Library};
 pub use model::{Model, ModelError};
 pub use reference::{Profile, Reference};
-pub use simulator::{Batch, Input, SimulationError, Start, Trajectory, simulate};
+pub use simulator::{Input, Plants, SimulationError, Start, Trajectory, simulate};
+pub use windows::{WindowErrors, WindowOptions, window_errors};

@@ -1,7 +1,7 @@
 //! Weight of a pendulum on a rotary axis.
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
-use crate::axis::Quantity;
+use crate::axis::{Axis, Quantity};
 
 /// `M sin(q - q_0)`; `M` is mass times gravity times the distance of the centre of mass.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +34,10 @@ static ABOUT: About = About {
 impl Effect for GravityPendulum {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn suits(&self, axis: Axis) -> bool {
+        axis == Axis::Rotary
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

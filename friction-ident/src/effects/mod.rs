@@ -17,12 +17,15 @@ pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
 pub mod ripple;
+pub mod shear_thinning;
 pub mod spring;
 pub mod stribeck;
 pub mod viscous;
 
 #[cfg(test)]
 mod testing;
+
+use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
@@ -38,6 +41,12 @@ pub trait Effect: Sync + Send {
     /// Other forms of the same law, named `effect:form`.
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &[]
+    }
+
+    /// Whether the effect exists on this kind of axis. It decides what is tried, not what a model
+    /// may have.
+    fn suits(&self, _axis: Axis) -> bool {
+        true
     }
 
     /// Slot [`Slot::SmoothForce`]: adds the force that resists the motion.
@@ -147,6 +156,7 @@ pub static ALL: &[&dyn Effect] = &[
     &spring::Spring,
     &gravity_pendulum::GravityPendulum,
     &quadratic_drag::QuadraticDrag,
+    &shear_thinning::ShearThinning,
     &actuator_lag::ActuatorLag,
 ];
 

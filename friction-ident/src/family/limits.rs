@@ -7,8 +7,11 @@ use super::preparation::Prepared;
 use crate::axis::{Axis, Quantity};
 use crate::effects::{self, About};
 
-/// Most trial periods of a ripple.
-const MOST_PERIODS: usize = 320;
+/// Most trial periods of a ripple: down to 1/280 of the stroke. Finer ones are not looked for.
+const MOST_PERIODS: usize = 700;
+/// Spacing of trial periods in spatial frequency times stroke. A line is 1
+/// wide, one of the second harmonic half as much.
+const LINE_WIDTH: f64 = 0.4;
 
 /// Sizes of the recording.
 pub struct Limits {
@@ -75,7 +78,7 @@ impl Limits {
 
     /// An effect as a term; parameters that are not fitted are left out.
     pub fn term(&self, about: &About) -> Term {
-        let fitted = about.parameters.iter().filter(|p| p.role != effects::Role::Fixed);
+        let fitted = about.parameters.iter().filter(|parameter| !is_fixed(parameter));
         Term {
             name: about.name.into(),
             title: about.title.into(),
@@ -149,6 +152,12 @@ impl Limits {
     }
 }
 
+/// Parameters that this comparison takes from the recording: those that are fixed by nature (a
+/// stroke), and the neutral position of a spring, which only shifts the offset.
+pub fn is_fixed(parameter: &effects::Parameter) -> bool {
+    parameter.role == effects::Role::Fixed || parameter.name == "x_0"
+}
+
 /// A lag or a delay of 0 is none, and a small one acts in proportion: in a comparison of forces it
 /// is an amplitude, like the sizes that a law is linear in.
 fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
@@ -157,18 +166,19 @@ fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
         || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
 }
 
-/// Trial periods of a ripple, the shortest first: evenly in spatial frequency, half a line width
-/// apart, up to the frequency that passes the comparison's bandwidth at low speed.
+/// Trial periods of a ripple, the shortest first: evenly in spatial frequency, a little less than a
+/// line width apart, up to the frequency that passes the comparison's bandwidth in slow motion.
 pub fn periods(prepared: &Prepared, stroke: (f64, f64)) -> Vec<f64> {
     let length = stroke.1 - stroke.0;
     let mut speeds: Vec<f64> = prepared.grid.iter().map(|&k| prepared.velocity[k].abs()).collect();
-    let quarter = speeds.len() / 4;
-    let slow = *speeds.select_nth_unstable_by(quarter, f64::total_cmp).1;
-    let highest = prepared.bandwidth / slow.max(prepared.rest_speed);
+    let tenth = speeds.len() / 10;
+    let slow = *speeds.select_nth_unstable_by(tenth, f64::total_cmp).1;
     let lowest = 1.5 / length;
-    let count = ((2.0 * (highest - lowest) * length) as usize).clamp(2, MOST_PERIODS);
-    (0..count)
+    let passing = prepared.bandwidth / slow.max(prepared.rest_speed);
+    let highest = passing.min(lowest + LINE_WIDTH * MOST_PERIODS as f64 / length);
+    let count = ((highest - lowest) * length / LINE_WIDTH).ceil().max(1.0) as usize;
+    (0..=count)
         .rev()
-        .map(|k| 1.0 / (lowest + (highest - lowest).max(lowest) * k as f64 / (count - 1) as f64))
+        .map(|k| 1.0 / (lowest + (highest - lowest).max(0.0) * k as f64 / count as f64))
         .collect()
 }

@@ -33,6 +33,9 @@ pub enum SimulationError {
         /// Time of this sample, s.
         after: f64,
     },
+    /// No plant at all.
+    #[error("there is no plant to simulate")]
+    Empty,
     /// Plants of different effects cannot share a batch.
     #[error("a batch takes plants of the same effects: {first} against {other}")]
     Structure {

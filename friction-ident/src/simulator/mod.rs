@@ -15,13 +15,13 @@
 //!   applied force is within the level, and slides off otherwise, in the rest of the same step.
 //! * With a pre-sliding contact the friction force is continuous and there is no event to locate.
 
-mod batch;
 mod error;
+mod plants;
 mod run;
 mod scratch;
 
-pub use batch::{Batch, Start};
 pub use error::SimulationError;
+pub use plants::{Plants, Start};
 pub use run::{DEFAULT_MAX_STEP, Input, Trajectory, simulate};
 
 #[cfg(test)]

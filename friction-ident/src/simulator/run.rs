@@ -2,7 +2,7 @@
 
 use missing_physics::Hold;
 
-use super::{Batch, SimulationError, Start};
+use super::{Plants, SimulationError, Start};
 use crate::model::Model;
 
 /// Longest step, s, unless another is asked for. Sample intervals are divided to stay below.
@@ -94,7 +94,7 @@ pub fn simulate(
     start: &Start,
 ) -> Result<Trajectory, SimulationError> {
     input.check()?;
-    let mut batch = Batch::new(std::slice::from_ref(model))?;
+    let mut batch = Plants::new(std::slice::from_ref(model))?;
     let samples = input.time.len();
     let mut out = Trajectory {
         position: Vec::with_capacity(samples),
@@ -119,7 +119,7 @@ pub fn simulate(
 }
 
 impl Trajectory {
-    fn push(&mut self, batch: &Batch, force: f64) {
+    fn push(&mut self, batch: &Plants, force: f64) {
         self.position.push(batch.position()[0]);
         self.velocity.push(batch.velocity()[0]);
         self.drive_force.push(force);

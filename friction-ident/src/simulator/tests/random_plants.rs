@@ -73,8 +73,8 @@ proptest! {
         for (i, other) in others.iter_mut().enumerate().filter(|(i, _)| *i != 4) {
             other.set("mass", 1.0 + i as f64).unwrap();
         }
-        let mut alone = Batch::new(std::slice::from_ref(&model)).unwrap();
-        let mut batch = Batch::new(&others).unwrap();
+        let mut alone = Plants::new(std::slice::from_ref(&model)).unwrap();
+        let mut batch = Plants::new(&others).unwrap();
         let start = Start { command: f, ..Start::at(0.0, 0.02) };
         alone.start(0, &start);
         (0..7).for_each(|i| batch.start(i, &start));

@@ -41,7 +41,7 @@ struct Active {
 }
 
 /// Plants of the same effects with parameters of their own, in lockstep.
-pub struct Batch {
+pub struct Plants {
     lanes: usize,
     effects: Vec<Active>,
     smooth: Vec<usize>,
@@ -61,35 +61,45 @@ pub struct Batch {
     scratch: Scratch,
 }
 
-impl Batch {
+impl Plants {
     /// One lane per model, all at rest at 0.
     ///
     /// # Errors
     /// [`SimulationError::Structure`] where the models are not of the same effects.
     pub fn new(models: &[Model]) -> Result<Self, SimulationError> {
         let lanes = models.len();
-        let first = models.first().map(Model::effects).unwrap_or_default();
+        let first = models.first().ok_or(SimulationError::Empty)?;
         for model in models {
-            if model.effects() != first {
-                let (first, other) = (first.join(", "), model.effects().join(", "));
+            if model.effects() != first.effects() {
+                let (first, other) = (first.effects().join(", "), model.effects().join(", "));
                 return Err(SimulationError::Structure { first, other });
             }
         }
-        let terms = models.first().map(Model::terms).unwrap_or_default();
-        let effects: Vec<Active> = (0..terms.len()).map(|k| Active::new(models, k)).collect();
+        let mut plants = Self::empty(first, lanes);
+        for (i, model) in models.iter().enumerate() {
+            plants.set_values(i, &model.values());
+        }
+        Ok(plants)
+    }
+
+    /// Plants of the effects of `model` without parameters.
+    fn empty(model: &Model, lanes: usize) -> Self {
+        let effects: Vec<Active> =
+            model.terms().iter().map(|term| Active::new(term.effect(), lanes)).collect();
         let on = |slot: Slot| -> Vec<usize> {
             (0..effects.len()).filter(|k| effects[*k].effect.about().acts_on(slot)).collect()
         };
-        let mut batch = Self {
+        let elements = effects.iter().filter_map(|active| active.effect.element());
+        Self {
             lanes,
             smooth: on(Slot::SmoothForce),
             level: on(Slot::FrictionLevel),
             drives: on(Slot::Drive),
             attached: on(Slot::Attached),
             contact: on(Slot::Contact).first().copied(),
-            iterations: 0,
+            iterations: elements.map(Element::iterations).max().unwrap_or(0),
             effects,
-            mass: models.iter().map(Model::mass).collect(),
+            mass: vec![1.0; lanes],
             time: vec![0.0; lanes],
             position: vec![0.0; lanes],
             velocity: vec![0.0; lanes],
@@ -97,10 +107,31 @@ impl Batch {
             dwell: vec![0.0; lanes],
             bond: vec![1.0; lanes],
             scratch: Scratch::new(lanes),
-        };
-        let elements = batch.effects.iter().filter_map(|active| active.effect.element());
-        batch.iterations = elements.map(Element::iterations).max().unwrap_or(0);
-        Ok(batch)
+        }
+    }
+
+    /// `lanes` plants that are all `model`.
+    pub fn uniform(model: &Model, lanes: usize) -> Self {
+        let mut plants = Self::empty(model, lanes);
+        let values = model.values();
+        for i in 0..lanes {
+            plants.set_values(i, &values);
+        }
+        plants
+    }
+
+    /// Gives lane `i` the parameters `values`, in the order of [`Model::addresses`]. Extra values
+    /// are ignored.
+    pub fn set_values(&mut self, i: usize, values: &[f64]) {
+        let Some((mass, values)) = values.split_first() else { return };
+        self.mass[i] = *mass;
+        let slots = self
+            .effects
+            .iter_mut()
+            .flat_map(|active| active.values.iter_mut().skip(i).step_by(self.lanes));
+        for (slot, value) in slots.zip(values) {
+            *slot = *value;
+        }
     }
 
     /// Number of lanes.
@@ -453,16 +484,12 @@ impl Batch {
 }
 
 impl Active {
-    fn new(models: &[Model], k: usize) -> Self {
-        let effect = models[0].terms()[k].effect();
-        let lanes = models.len();
-        let parameters = effect.about().parameters.len();
-        let value = |index: usize| models[index % lanes].terms()[k].values()[index / lanes];
+    fn new(effect: &'static dyn Effect, lanes: usize) -> Self {
         let element = effect.element().map_or(0, Element::states);
         let drive = effect.drive().map_or(0, Drive::states);
         Self {
             effect,
-            values: (0..parameters * lanes).map(value).collect(),
+            values: vec![0.0; effect.about().parameters.len() * lanes],
             element: vec![0.0; element * lanes],
             drive: vec![0.0; drive * lanes],
         }
