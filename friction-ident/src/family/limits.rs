@@ -78,7 +78,7 @@ impl Limits {
 
     /// An effect as a term; parameters that are not fitted are left out.
     pub fn term(&self, about: &About) -> Term {
-        let fitted = about.parameters.iter().filter(|p| p.role != effects::Role::Fixed);
+        let fitted = about.parameters.iter().filter(|parameter| !is_fixed(parameter));
         Term {
             name: about.name.into(),
             title: about.title.into(),
@@ -150,6 +150,12 @@ impl Limits {
         let start = if (lower..=upper).contains(&typical) { typical } else { middle };
         (lower, upper, start)
     }
+}
+
+/// Parameters that this comparison takes from the recording: those that are fixed by nature (a
+/// stroke), and the neutral position of a spring, which only shifts the offset.
+pub fn is_fixed(parameter: &effects::Parameter) -> bool {
+    parameter.role == effects::Role::Fixed || parameter.name == "x_0"
 }
 
 /// A lag or a delay of 0 is none, and a small one acts in proportion: in a comparison of forces it

@@ -24,7 +24,7 @@ pub use words::engineering;
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
-use crate::effects::{Effect, Library, Role, Slot};
+use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
 
 /// What can be chosen.
@@ -121,9 +121,10 @@ impl FrictionFamily {
             model = model.with_effect(effect)?;
             let mut values = values.iter();
             for parameter in effect.about().parameters {
-                let value = match parameter.role {
-                    Role::Fixed => self.fixed(parameter.name),
-                    _ => values.next().copied(),
+                let value = if limits::is_fixed(parameter) {
+                    self.fixed(parameter.name)
+                } else {
+                    values.next().copied()
                 };
                 if let Some(value) = value {
                     model.set(&address(effect, parameter.name), value)?;
@@ -151,16 +152,18 @@ impl FrictionFamily {
             let parameters = term.effect().about().parameters.iter().zip(term.values());
             fitted
                 .values
-                .extend(parameters.filter(|(p, _)| p.role != Role::Fixed).map(|(_, value)| *value));
+                .extend(parameters.filter(|(p, _)| !limits::is_fixed(p)).map(|(_, value)| *value));
         }
         Ok(fitted)
     }
 
-    /// Parameters that are not fitted: the stroke is that of the recording.
+    /// Parameters that are not fitted: the stroke is that of the recording, a spring is relaxed in
+    /// its middle.
     fn fixed(&self, name: &str) -> Option<f64> {
         match name {
             "start" => Some(self.stroke.0),
             "end" => Some(self.stroke.1),
+            "x_0" => Some(f64::midpoint(self.stroke.0, self.stroke.1)),
             _ => None,
         }
     }
