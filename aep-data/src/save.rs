@@ -22,7 +22,15 @@ pub struct SaveError {
 /// # Errors
 /// The path and what the system says.
 pub fn save(path: &Path, bytes: &[u8]) -> Result<(), SaveError> {
-    write(path, bytes).map_err(|source| SaveError { path: path.to_owned(), source })
+    write(path, bytes)
+        .map_err(|error| SaveError { path: path.to_owned(), source: without_path(error) })
+}
+
+/// The system's own error: the name of the file in between means nothing to the user.
+fn without_path(error: std::io::Error) -> std::io::Error {
+    let inner = error.get_ref().and_then(std::error::Error::source);
+    let inner = inner.and_then(|source| source.downcast_ref::<std::io::Error>());
+    inner.and_then(std::io::Error::raw_os_error).map_or(error, std::io::Error::from_raw_os_error)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
@@ -80,6 +88,7 @@ mod tests {
     fn a_folder_that_is_not_there_is_named() {
         let error = save(Path::new("/no/such/folder/out.json"), b"x").unwrap_err();
         assert!(error.to_string().contains("/no/such/folder/out.json"));
+        assert!(!error.to_string().contains(".aep-"), "{error}");
     }
 
     #[cfg(unix)]
