@@ -1,2 +1,16 @@
-//! The command line: aep.
-fn main() {}
+//! The command line `aep`: arguments, progress, tables. No physics and no numerics of its own.
+
+mod app;
+mod args;
+mod commands;
+mod example;
+mod failure;
+mod output;
+mod progress;
+mod report;
+mod steps;
+mod stop;
+
+fn main() -> std::process::ExitCode {
+    app::main()
+}

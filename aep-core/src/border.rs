@@ -31,50 +31,78 @@ impl Border {
     pub const ALL: [Self; 5] =
         [Self::Clamp, Self::Reflect, Self::Resample, Self::KeepComponent, Self::Allow];
 
-    /// The value of a component that was moved from `parent` to `proposal`; `redraw` makes another
-    /// proposal. A proposal that is not finite never survives.
+    /// Settles every component of a child that was moved away from `parent`; `redraw` makes another
+    /// proposal for a component. A proposal that is not finite never survives.
+    ///
     #[inline]
     pub fn settle<T: Scalar>(
         self,
-        proposal: T,
-        parent: T,
-        (lower, upper): (T, T),
-        redraw: impl FnMut() -> T,
-    ) -> T {
-        if lower <= proposal && proposal <= upper {
-            return proposal;
+        child: &mut [T],
+        parent: &[T],
+        (lower, upper): (&[T], &[T]),
+        redraw: impl FnMut(usize) -> T,
+    ) {
+        let n = child.len();
+        let (lower, upper, parent) = (&lower[..n], &upper[..n], &parent[..n]);
+        if all_within(child, lower, upper) {
+            return;
         }
-        self.settle_outside(proposal, parent, (lower, upper), redraw)
+        if self == Self::Reflect {
+            for j in 0..n {
+                child[j] = reflect(child[j], parent[j], lower[j], upper[j]);
+            }
+        } else {
+            self.settle_each(child, parent, (lower, upper), redraw);
+        }
     }
 
-    #[cold]
-    fn settle_outside<T: Scalar>(
+    fn settle_each<T: Scalar>(
         self,
-        proposal: T,
-        parent: T,
-        (lower, upper): (T, T),
-        mut redraw: impl FnMut() -> T,
-    ) -> T {
-        match self {
-            Self::Clamp if !proposal.is_nan() => proposal.max(lower).min(upper),
-            Self::Reflect if proposal.is_finite() => reflect(proposal, lower, upper),
-            Self::Allow if proposal.is_finite() => proposal,
-            Self::Resample => {
-                (0..TRIES).map(|_| redraw()).find(|p| lower <= *p && *p <= upper).unwrap_or(parent)
+        child: &mut [T],
+        parent: &[T],
+        (lower, upper): (&[T], &[T]),
+        mut redraw: impl FnMut(usize) -> T,
+    ) {
+        for j in 0..child.len() {
+            let (proposal, lower, upper) = (child[j], lower[j], upper[j]);
+            let within = |z: &T| lower <= *z && *z <= upper;
+            if within(&proposal) {
+                continue;
             }
-            _ => parent,
+            child[j] = match self {
+                Self::Clamp if !proposal.is_nan() => proposal.max(lower).min(upper),
+                Self::Reflect => reflect(proposal, parent[j], lower, upper),
+                Self::Allow if proposal.is_finite() => proposal,
+                Self::Resample => (0..TRIES).map(|_| redraw(j)).find(within).unwrap_or(parent[j]),
+                _ => parent[j],
+            };
         }
     }
 }
 
-/// Mirrors `x` at both limits: the triangle wave of period 2 (upper - lower).
-fn reflect<T: Scalar>(x: T, lower: T, upper: T) -> T {
-    let width = upper - lower;
-    let period = width + width;
-    let phase = (x - lower) % period;
-    let phase = if phase < T::zero() { phase + period } else { phase };
-    let inside = if phase > width { period - phase } else { phase };
-    (lower + inside).max(lower).min(upper)
+/// Whether all components are within their limits: tested without a branch per component, in vector
+/// registers, because most children are inside.
+#[inline]
+fn all_within<T: Scalar>(x: &[T], lower: &[T], upper: &[T]) -> bool {
+    let within = x.iter().zip(lower).zip(upper).map(|((x, lo), hi)| (lo <= x, x <= hi));
+    within.fold(true, |all, (above, below)| all & above & below)
+}
+
+/// Mirrors `x` at both limits if it is outside: the triangle wave of period 2 (upper - lower), which
+/// is the distance to the nearest even multiple of the width. `parent` if `x` is not finite.
+///
+/// Rounds to the nearest integer by adding and subtracting 1.5 * 2^52. This has no branch and no
+/// call, so that a whole position is mirrored in vector registers.
+#[inline]
+fn reflect<T: Scalar>(x: T, parent: T, lower: T, upper: T) -> T {
+    const SHIFT: f64 = 6_755_399_441_055_744.0;
+    let width = (upper - lower).as_f64();
+    let phase = (x - lower).as_f64() / width;
+    let even = ((phase * 0.5 + SHIFT) - SHIFT) * 2.0;
+    let distance = (phase - even).abs();
+    let mirrored = (lower + T::of(distance * width)).min(upper);
+    let outside = if distance <= 1.0 { mirrored } else { parent };
+    if lower <= x && x <= upper { x } else { outside }
 }
 
 #[cfg(test)]
@@ -83,10 +111,15 @@ mod tests {
 
     #[test]
     fn each_choice_does_what_it_says() {
-        let settle = |border: Border, x: f64| border.settle(x, 0.5, (0.0, 1.0), || 0.25);
+        let settle = |border: Border, x: f64| {
+            let mut child = [x];
+            border.settle(&mut child, &[0.5], (&[0.0], &[1.0]), |_| 0.25);
+            child[0]
+        };
         assert_eq!(settle(Border::Clamp, 1.5), 1.0);
         assert_eq!(settle(Border::Reflect, 1.25), 0.75);
         assert_eq!(settle(Border::Reflect, -2.25), 0.25);
+        assert_eq!(settle(Border::Reflect, 1e6 + 0.25), 0.25);
         assert_eq!(settle(Border::Resample, 1.5), 0.25);
         assert_eq!(settle(Border::KeepComponent, 1.5), 0.5);
         assert_eq!(settle(Border::Allow, 1.5), 1.5);
@@ -96,8 +129,9 @@ mod tests {
     fn a_step_that_is_not_finite_never_survives() {
         for border in Border::ALL {
             for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-                let settled = border.settle(x, 0.5, (0.0, 1.0), || f64::NAN);
-                assert!((0.0..=1.0).contains(&settled), "{border:?} {x}");
+                let mut child = [x];
+                border.settle(&mut child, &[0.5], (&[0.0], &[1.0]), |_| f64::NAN);
+                assert!((0.0..=1.0).contains(&child[0]), "{border:?} {x}");
             }
         }
     }

@@ -86,7 +86,10 @@ impl De {
 
 impl<T: Scalar> Method<T> for De {
     fn name(&self) -> String {
-        "de".into()
+        match self.control {
+            Control::SelfAdaptive => "de".into(),
+            Control::Fixed { .. } => "de-fixed".into(),
+        }
     }
 
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
@@ -158,15 +161,14 @@ impl<T: Scalar> Mutation<T> for De {
         let certain = random::index(rng, own.len());
         for j in 0..own.len() {
             let crossed = j == certain || random::uniform::<T>(rng) < factors.crossover;
-            child.position[j] = if crossed {
-                let limits = (domain.search_lower()[j], domain.search_upper()[j]);
-                // Without randomness of its own a component cannot be drawn again; a random place
-                // does the same service.
-                let redraw = || limits.0 + (limits.1 - limits.0) * random::uniform(rng);
-                self.border.settle(a[j] + factors.factor * (b[j] - c[j]), own[j], limits, redraw)
-            } else {
-                own[j]
-            };
+            child.position[j] =
+                if crossed { a[j] + factors.factor * (b[j] - c[j]) } else { own[j] };
         }
+        let limits = (domain.search_lower(), domain.search_upper());
+        // Without randomness of its own a component cannot be drawn again; a random place does the
+        // same service.
+        self.border.settle(child.position, own, limits, |j| {
+            limits.0[j] + (limits.1[j] - limits.0[j]) * random::uniform(rng)
+        });
     }
 }

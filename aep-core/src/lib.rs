@@ -30,6 +30,7 @@ mod engine;
 mod error;
 mod evaluate;
 mod meta_ep;
+pub mod methods;
 mod mutation;
 mod observe;
 mod points;
@@ -38,6 +39,7 @@ mod problem;
 pub mod random;
 mod scalar;
 mod selection;
+mod trace;
 pub mod trials;
 
 pub use aep::{
@@ -65,3 +67,4 @@ pub use problem::{Errors, FallibleProblem, FnProblem, Problem};
 pub use random::{Purpose, Stream, Streams};
 pub use scalar::Scalar;
 pub use selection::{OneToOne, Selection, Ties, Tournament};
+pub use trace::{Trace, TraceFormat};

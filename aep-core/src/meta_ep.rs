@@ -160,7 +160,8 @@ impl MetaEp {
 
 impl<T: Scalar> Method<T> for MetaEp {
     fn name(&self) -> String {
-        if *self == Self::practical() { "meta-ep-practical".into() } else { "meta-ep".into() }
+        let practical = *self == Self::practical().with_population(self.population);
+        if practical { "meta-ep-practical".into() } else { "meta-ep".into() }
     }
 
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
@@ -228,17 +229,20 @@ impl<T: Scalar> Mutation<T> for MetaEpMutation<T> {
         let base = population.positions.row(parent);
         let sigma = &population.individuals[parent].0;
         let common = self.common_rate * random::normal::<T>(rng);
+        let (position, mutated) = (child.position, &mut child.individual.0);
         for j in 0..base.len() {
-            let limits = (domain.search_lower()[j], domain.search_upper()[j]);
-            let mutated = sigma[j] * (common + self.rate * random::normal::<T>(rng)).exp();
-            let moving = match self.config.order {
-                UpdateOrder::PositionFirst => sigma[j],
-                UpdateOrder::SigmaFirst => mutated,
-            };
-            let mut propose = || base[j] + moving * random::normal::<T>(rng);
-            let proposal = propose();
-            child.position[j] = self.config.border.settle(proposal, base[j], limits, propose);
-            child.individual.0[j] = mutated;
+            mutated[j] = sigma[j] * (common + self.rate * random::normal::<T>(rng)).exp();
         }
+        let moving = match self.config.order {
+            UpdateOrder::PositionFirst => sigma,
+            UpdateOrder::SigmaFirst => &*mutated,
+        };
+        random::fill_normal(rng, position);
+        for j in 0..base.len() {
+            position[j] = base[j] + moving[j] * position[j];
+        }
+        let limits = (domain.search_lower(), domain.search_upper());
+        let again = |j: usize| base[j] + moving[j] * random::normal::<T>(rng);
+        self.config.border.settle(position, base, limits, again);
     }
 }

@@ -59,11 +59,11 @@ impl<T: Scalar, I> Population<T, I> {
         order
     }
 
-    /// Exchanges slot `i` with slot `k` of `other`.
+    /// Replaces slot `i` by slot `k` of `other`, which then holds an old individual.
     #[inline]
-    pub fn swap_with(&mut self, i: usize, other: &mut Self, k: usize) {
-        self.positions.row_mut(i).swap_with_slice(other.positions.row_mut(k));
-        std::mem::swap(&mut self.costs[i], &mut other.costs[k]);
+    pub fn take(&mut self, i: usize, other: &mut Self, k: usize) {
+        self.positions.row_mut(i).copy_from_slice(other.positions.row(k));
+        self.costs[i] = other.costs[k];
         std::mem::swap(&mut self.individuals[i], &mut other.individuals[k]);
     }
 }

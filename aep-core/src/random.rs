@@ -72,6 +72,16 @@ pub fn normal<T: Scalar>(rng: &mut Stream) -> T {
     T::of(rng.sample::<f64, _>(StandardNormal))
 }
 
+/// Fills `numbers` from N(0, 1). The generator's state stays in registers for the whole row.
+#[inline]
+pub fn fill_normal<T: Scalar>(rng: &mut Stream, numbers: &mut [T]) {
+    let mut local = rng.clone();
+    for number in numbers {
+        *number = normal(&mut local);
+    }
+    *rng = local;
+}
+
 /// One number from the uniform distribution on [0, 1).
 #[inline]
 pub fn uniform<T: Scalar>(rng: &mut Stream) -> T {

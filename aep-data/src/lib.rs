@@ -49,7 +49,7 @@ pub use layouts::{LAYOUTS, Layout};
 pub use mapping::{Mapping, Source, hold_name, parse_hold};
 pub use role::{ALL as ROLES, Facts, Role};
 pub use save::{SaveError, save};
-pub use write::{to_csv, to_toml};
+pub use write::{to_csv, to_csv_rounded, to_toml};
 
 use csv_table::CsvTable;
 use mat_table::MatTable;

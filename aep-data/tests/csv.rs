@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use aep_data::{Loaded, Mapping, Source, load, parse, to_csv, to_toml};
+use aep_data::{Loaded, Mapping, Source, load, parse, to_csv, to_csv_rounded, to_toml};
 use missing_physics::{Channel, Hold, Recording};
 
 fn read(text: &str, mapping: &Mapping) -> Loaded {
@@ -104,4 +104,17 @@ fn what_is_written_reads_back_to_the_bit() {
         let mapping = Mapping::parse(&to_toml(&recording), Path::new("run.toml")).unwrap();
         assert_eq!(read(&to_csv(&recording), &mapping).recording, recording);
     }
+}
+
+#[test]
+fn rounded_numbers_keep_the_digits_asked_for() {
+    let time: Vec<f64> = (0..20).map(|k| f64::from(k) * 1e-3).collect();
+    let channels = vec![
+        Channel::new("force", "N", (0..20).map(|k| f64::from(k) * 12.345_678_9).collect()),
+        Channel::new("position", "m", (0..20).map(|k| -f64::from(k) * 1e-6).collect()),
+    ];
+    let recording = Recording::new("run.csv", time, channels).unwrap();
+    let text = to_csv_rounded(&recording, 6);
+    assert_eq!(text.lines().nth(1), Some("0,0,0"));
+    assert_eq!(text.lines().nth(4), Some("0.003,37.037,-0.000003"));
 }

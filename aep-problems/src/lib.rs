@@ -16,6 +16,7 @@
 
 mod definition;
 mod dejong;
+pub mod paper;
 mod problem;
 mod suite;
 

@@ -1,1 +1,12 @@
 //! The report page: a self-contained HTML document of a discovery.
+//!
+//! [`report::html`] makes one file with its styles and drawings inside: no scripts, nothing loaded
+//! from elsewhere, light or dark as the reader's system asks, and fit to print. [`words`] has the
+//! sentences that page and terminal share.
+
+mod html;
+mod plot;
+pub mod report;
+pub mod words;
+
+pub use report::Source;

@@ -17,6 +17,8 @@ mod memory;
 /// Samples that go through the hooks at once: large enough to hide the calls, small enough for the
 /// first-level cache.
 const BLOCK: usize = 128;
+/// Samples over which the load of a contact at the start of a segment is averaged.
+const STARTING: usize = 5;
 
 /// Channels of a motion that do not fit together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -129,7 +131,7 @@ fn check(channel: &'static str, values: &[f64], time: &[f64]) -> Result<(), Moti
 /// The force that the drive must command for `model` to follow `motion`, N or N m.
 pub fn force_along(model: &Model, motion: &MeasuredMotion<'_>) -> Vec<f64> {
     let walk = Walk::new(model, motion);
-    let mut force = walk.smooth_force(model.terms());
+    let mut force = walk.smooth.clone();
     for ((force, friction), a) in force.iter_mut().zip(&walk.friction).zip(motion.acceleration) {
         *force += friction + model.mass() * a;
     }
@@ -182,6 +184,9 @@ struct Walk<'a> {
     /// Level that memories add; empty without any.
     remembered: Vec<f64>,
     drive_force: Cow<'a, [f64]>,
+    /// Force of everything smooth.
+    smooth: Vec<f64>,
+    mass: f64,
     /// Friction force.
     friction: Vec<f64>,
     /// Utilisation of the friction level, -1..1.
@@ -202,6 +207,8 @@ impl<'a> Walk<'a> {
             bond: vec![1.0; samples],
             remembered: Vec::new(),
             drive_force,
+            smooth: Vec::new(),
+            mass: model.mass(),
             friction: Vec::new(),
             used: Vec::new(),
             attached: Vec::new(),
@@ -210,6 +217,7 @@ impl<'a> Walk<'a> {
             walk.dwell = memory::dwell(motion);
         }
         walk.recall(model.terms());
+        walk.smooth = walk.smooth_force(model.terms());
         let level = walk.friction_level(model.terms());
         let breakaway = walk.breakaway(model.terms(), &level);
         walk.slide(model, &level, &breakaway);
@@ -242,16 +250,30 @@ impl<'a> Walk<'a> {
         let mut state = vec![0.0; element.states()];
         for segment in self.motion.segments.iter().filter(|segment| !segment.is_empty()) {
             let path = self.path(segment, level, breakaway);
-            let first = self.direction[segment.clone()].iter().find(|d| **d != 0.0);
-            let onset = Onset {
-                level: level[segment.start],
-                used: first.copied().unwrap_or(0.0),
-                velocity: self.motion.velocity[segment.start],
-            };
-            element.start(term.values(), &onset, &mut state);
+            let level = level[segment.start];
+            let used = self.used_at_start(segment, level);
+            let velocity = self.motion.velocity[segment.start];
+            element.start(term.values(), &Onset { level, used, velocity }, &mut state);
             element.along(term.values(), &path, &mut state, &mut force[segment.clone()]);
         }
         force
+    }
+
+    /// Utilisation of the friction level at the start of a segment. A contact that starts at rest and
+    /// never slides keeps its first load for ever, so that it matters: at rest it carries what the
+    /// drive, less the inertia, puts on it.
+    fn used_at_start(&self, segment: &Range<usize>, level: f64) -> f64 {
+        let first = self.direction[segment.clone()].iter().find(|d| **d != 0.0);
+        let sliding = first.copied().unwrap_or(0.0);
+        if self.motion.drive_force.is_none() || level <= 0.0 {
+            return sliding;
+        }
+        let window = segment.start..segment.end.min(segment.start + STARTING);
+        let count = window.len() as f64;
+        let load = |k: usize| {
+            self.drive_force[k] - self.smooth[k] - self.mass * self.motion.acceleration[k]
+        };
+        (window.map(load).sum::<f64>() / count / level).clamp(-1.0, 1.0)
     }
 
     /// The steps to the samples of a segment.

@@ -269,7 +269,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             });
             let fit = self.with(candidate);
             let error = self.split.rms(&fit.residual).validation;
-            if error < enough {
+            if error < enough && self.confirmed(&fit) {
                 tried.push((candidate.clone(), fit, error));
             }
         }
@@ -286,6 +286,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.ladder.rivals(tried[0].0.term, rivals);
         let (candidate, fit, _) = tried.swap_remove(0);
         Some((candidate, fit))
+    }
+
+    /// Whether no other view of the held-out error contradicts: what really acts on the plant helps
+    /// in every view.
+    fn confirmed(&self, fit: &Fit) -> bool {
+        let before = self.ladder.views();
+        let after = self.family.views(&fit.model, &self.split);
+        after.iter().all(|(name, error)| {
+            before.get(name).is_none_or(|old| error.validation <= CONTRADICTION * old.validation)
+        })
     }
 
     fn with(&self, candidate: &Screened) -> Fit {
@@ -353,6 +363,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 const MOST_TRIED: usize = 4;
 /// A rival leaves at most this share of what the best candidate removed.
 const RIVAL: f64 = 0.05;
+
+/// Another view contradicts an effect where its held-out error grows by this factor.
+const CONTRADICTION: f64 = 1.05;
 
 /// Weights for screening: a point whose doubt exceeds the usual residual counts accordingly less.
 pub fn weights(doubt: &[f64], residual: &[f64]) -> Vec<f64> {

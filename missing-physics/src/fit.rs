@@ -13,6 +13,10 @@ use crate::family::{Fitted, ModelFamily, Parameter};
 const MAX_STEPS: usize = 40;
 /// Relative fall of the cost below which the fit has converged.
 const CONVERGED: f64 = 1e-10;
+/// Pull towards the start, relative to the curvature of each parameter: what the data do not
+/// determine (an offset against a direction-dependent level) stays where it was, what they do is
+/// not noticeably moved.
+const ANCHOR: f64 = 1e-6;
 /// Step of the finite differences, relative to the size of a parameter.
 const DIFFERENCE: f64 = 1e-4;
 
@@ -51,11 +55,12 @@ pub fn predict<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<f64> 
 
 /// Refines `start` on the grid points with a weight; `weights` multiplies the residual.
 pub fn refine<F: ModelFamily + ?Sized>(family: &F, start: Fitted, weights: &[f64]) -> Fit {
+    let anchor = start.values.clone();
     let mut fit = evaluate(family, start, weights);
     let mut damping = 1e-8;
     for _ in 0..MAX_STEPS {
         let before = fit.cost;
-        let Some(better) = step(family, &fit, weights, &mut damping) else { break };
+        let Some(better) = step(family, &fit, weights, &anchor, &mut damping) else { break };
         fit = better;
         if before - fit.cost <= CONVERGED * before {
             break;
@@ -78,6 +83,7 @@ fn step<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
     weights: &[f64],
+    anchor: &[f64],
     damping: &mut f64,
 ) -> Option<Fit> {
     let parameters: Vec<&Parameter> = fit.model.parameters(family).map(|(_, p)| p).collect();
@@ -86,8 +92,13 @@ fn step<F: ModelFamily + ?Sized>(
     };
     let columns: Vec<Vec<f64>> = fit.jacobian.iter().map(|column| weigh(column)).collect();
     let target = weigh(&fit.residual);
-    let moment: Vec<f64> = columns.iter().map(|column| dot(column, &target)).collect();
-    let normal = gram(&columns);
+    let mut moment: Vec<f64> = columns.iter().map(|column| dot(column, &target)).collect();
+    let mut normal = gram(&columns);
+    for (k, parameter) in parameters.iter().enumerate() {
+        let pull = ANCHOR * normal[k][k];
+        moment[k] -= pull * away(parameter, fit.model.values[k], anchor[k]);
+        normal[k][k] += pull;
+    }
     let active: Vec<usize> = (0..parameters.len())
         .filter(|&k| !pushed_out(parameters[k], fit.model.values[k], moment[k]))
         .collect();
@@ -112,6 +123,14 @@ fn step<F: ModelFamily + ?Sized>(
         *damping *= 10.0;
     }
     None
+}
+
+/// How far a value is from `anchor`, on the parameter's own scale.
+fn away(parameter: &Parameter, value: f64, anchor: f64) -> f64 {
+    match parameter.scale {
+        Scale::Linear => value - anchor,
+        Scale::Log => (value / anchor).ln(),
+    }
 }
 
 fn pushed_out(parameter: &Parameter, value: f64, moment: f64) -> bool {

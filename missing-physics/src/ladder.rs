@@ -69,6 +69,11 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         self.added.clone()
     }
 
+    /// Every error of the last rung.
+    pub(crate) fn views(&self) -> BTreeMap<String, SplitError> {
+        self.rungs.last().map(|rung| rung.error.clone()).unwrap_or_default()
+    }
+
     /// Relative error of the last rung on held-out data.
     pub(crate) fn relative(&self) -> f64 {
         let key = relative_key(self.family);

@@ -10,6 +10,7 @@ pub mod data_check;
 pub mod discover;
 pub mod family;
 pub mod fit;
+pub mod in_time;
 pub mod ladder;
 pub mod noise;
 pub mod placebo;

@@ -63,6 +63,13 @@ fn similarity(signal: &[f64], shift: usize) -> f64 {
     ((dot(tail, &signal[..rest]) + dot(head, &signal[rest..])) / all).abs()
 }
 
+/// Draws `count` orders of the grid in which whole blocks of time stand at random places: what lasts
+/// longer than a block is broken.
+pub fn shuffles(points: usize, count: usize, seed: u64) -> Vec<Vec<usize>> {
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+    (0..count).map(|_| shuffled(points, &mut random)).collect()
+}
+
 /// Blocks of the grid in random order, each forwards or backwards.
 fn shuffled(points: usize, random: &mut Xoshiro256PlusPlus) -> Vec<usize> {
     let offset = random.random_range(0..points);

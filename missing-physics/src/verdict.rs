@@ -7,6 +7,7 @@ use crate::family::{Coordinate, ModelFamily};
 use crate::fit::Fit;
 use crate::ladder::{self, Ladder};
 use crate::noise;
+use crate::quantity::quantity;
 use crate::report::{Curve, Discovery, Plot, Verdict, Where};
 use crate::screen::Screened;
 use crate::shapes::amplitudes;
@@ -51,11 +52,15 @@ pub fn report<F: ModelFamily + ?Sized>(
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
 
     let left = split.rms(&evidence.last.residual).validation;
-    let structure = evidence
-        .where_last
-        .iter()
-        .find(|place| place.p_value <= STRUCTURE.0 && place.share >= STRUCTURE.1)
-        .filter(|_| left > ABOVE_FLOOR * floor);
+    let structure = evidence.where_last.iter().find(|place| {
+        let strong = place.p_value <= STRUCTURE.0 && place.share >= STRUCTURE.1;
+        // The floor compares equal states: what changes with time is part of it.
+        let in_time = family
+            .coordinates()
+            .iter()
+            .any(|c| c.name == place.coordinate && where_it_fails::only_grows(c));
+        strong && (in_time || left > ABOVE_FLOOR * floor)
+    });
     let verdict = match (added.is_empty(), ambiguous.is_empty(), structure) {
         (false, false, _) => Verdict::Ambiguous,
         (false, true, _) => Verdict::EffectsFound,
@@ -141,7 +146,7 @@ fn limits<F: ModelFamily + ?Sized>(
             let term = &family.terms()[candidate.term];
             let amplitude = amplitudes(term).first().copied()?;
             let size = (candidate.needed.max(0.0) * square / candidate.leverage).sqrt();
-            let words = format!("{} {size:.3} {}", amplitude.name, amplitude.unit);
+            let words = format!("{} {}", amplitude.name, quantity(size, &amplitude.unit));
             Some((term.name.clone(), words))
         })
         .collect()

@@ -4,7 +4,9 @@
 use rayon::prelude::*;
 
 use crate::family::{Coordinate, ModelFamily};
+use crate::in_time::Trials;
 use crate::placebo;
+use crate::quantity::quantity;
 use crate::report::{RegimeShare, Where};
 
 /// Bins along a coordinate, each with the same number of points.
@@ -28,34 +30,70 @@ pub struct View<'a> {
 /// would remove (a step for each of 20 bins, adjusted for their number), the chance of as much by
 /// accident, and where along the coordinate it is worst. Largest share first.
 pub fn coordinates<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where> {
-    let orders = placebo::rearrangements(view.residual.len(), PLACEBOS, view.motion, view.seed);
+    let points = view.residual.len();
+    let shifts = placebo::rearrangements(points, PLACEBOS, view.motion, view.seed);
+    let shuffles = placebo::shuffles(points, PLACEBOS, view.seed);
     let unit = family.quantity().unit;
     let mut found: Vec<Where> = family
         .coordinates()
         .par_iter()
         .map(|coordinate| {
-            let bins = Bins::new(&coordinate.values);
-            let seen = parity(coordinate, view.residual, view.weights);
-            let share = bins.explained(&seen);
-            let placebos: Vec<f64> = orders
-                .iter()
-                .map(|order| {
-                    let moved: Vec<f64> = order.iter().map(|&k| view.residual[k]).collect();
-                    let weights: Vec<f64> = order.iter().map(|&k| view.weights[k]).collect();
-                    bins.explained(&parity(coordinate, &moved, &weights))
-                })
-                .collect();
-            let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
-            Where {
-                coordinate: coordinate.name.clone(),
-                share,
-                p_value: placebo::p_value(share, &placebos),
-                note: bins.worst(coordinate, &plain, &unit),
+            if only_grows(coordinate) {
+                along_time(coordinate, view, &shuffles, &unit)
+            } else {
+                along(coordinate, view, &shifts, &unit)
             }
         })
         .collect();
     found.sort_by(|a, b| b.share.total_cmp(&a.share));
     found
+}
+
+/// Whether a coordinate is, or behaves like, time.
+pub fn only_grows(coordinate: &Coordinate) -> bool {
+    coordinate.values.windows(2).all(|pair| pair[0] < pair[1])
+}
+
+/// Dependence on a coordinate of the motion.
+fn along(coordinate: &Coordinate, view: &View<'_>, orders: &[Vec<usize>], unit: &str) -> Where {
+    let bins = Bins::new(&coordinate.values);
+    let (share, p_value) = tested(coordinate, view, orders, |seen| bins.explained(seen));
+    let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
+    let note = bins.worst(coordinate, &plain, unit);
+    Where { coordinate: coordinate.name.clone(), share, p_value, note }
+}
+
+/// Dependence on a coordinate that only ever grows: time.
+fn along_time(
+    coordinate: &Coordinate,
+    view: &View<'_>,
+    orders: &[Vec<usize>],
+    unit: &str,
+) -> Where {
+    let trials = Trials::new(&coordinate.values);
+    let (share, p_value) = tested(coordinate, view, orders, |seen| trials.best(seen).0);
+    let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
+    let note = trials.best(&plain).1.words(unit);
+    Where { coordinate: coordinate.name.clone(), share, p_value, note }
+}
+
+/// A statistic of the residual and its p-value among those of the rearranged residual.
+fn tested(
+    coordinate: &Coordinate,
+    view: &View<'_>,
+    orders: &[Vec<usize>],
+    statistic: impl Fn(&[f64]) -> f64,
+) -> (f64, f64) {
+    let share = statistic(&parity(coordinate, view.residual, view.weights));
+    let placebos: Vec<f64> = orders
+        .iter()
+        .map(|order| {
+            let moved: Vec<f64> = order.iter().map(|&k| view.residual[k]).collect();
+            let weights: Vec<f64> = order.iter().map(|&k| view.weights[k]).collect();
+            statistic(&parity(coordinate, &moved, &weights))
+        })
+        .collect();
+    (share, placebo::p_value(share, &placebos))
 }
 
 /// Share of the squared error and of the time in every regime; both sum to one.
@@ -156,10 +194,9 @@ impl Bins {
             .max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()));
         let Some(bin) = worst else { return String::new() };
         let opposes = if coordinate.parity.is_some() { " against the motion" } else { "" };
-        format!(
-            "largest mean error {:+.3} {unit}{opposes} near {:.4} {}",
-            means[bin], at[bin], coordinate.unit
-        )
+        let sign = if means[bin] > 0.0 { "+" } else { "" };
+        let (size, place) = (quantity(means[bin], unit), quantity(at[bin], &coordinate.unit));
+        format!("largest mean error {sign}{size}{opposes} near {place}")
     }
 }
 

@@ -185,7 +185,8 @@ impl Aep {
 
 impl<T: Scalar> Method<T> for Aep {
     fn name(&self) -> String {
-        if *self == Self::practical() { "aep-practical".into() } else { "aep".into() }
+        let practical = *self == Self::practical().with_population(self.population);
+        if practical { "aep-practical".into() } else { "aep".into() }
     }
 
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {

@@ -116,21 +116,23 @@ impl<T: Scalar> AepMutation<T> {
     /// Every component by itself.
     #[inline]
     fn move_components(&self, step: &Step<'_, T>, rng: &mut Stream, child: &mut [T]) {
-        let n = step.base.len();
-        let (lower, upper) = (&step.domain.search_lower()[..n], &step.domain.search_upper()[..n]);
-        let (base, units, child) = (&step.base[..n], &self.steps.units[..n], &mut child[..n]);
-        for j in 0..n {
-            let mut propose = || {
-                let length = step.sigma * units[j] * random::normal::<T>(rng);
-                match step.directions {
-                    None => base[j] + length,
-                    Some(directions) if directions[j] < 0 => base[j] - length.abs(),
-                    Some(_) => base[j] + length.abs(),
+        let n = child.len();
+        let (base, units) = (&step.base[..n], &self.steps.units[..n]);
+        random::fill_normal(rng, child);
+        match step.directions {
+            None => {
+                for j in 0..n {
+                    child[j] = base[j] + step.sigma * units[j] * child[j];
                 }
-            };
-            let proposal = propose();
-            child[j] = self.config.border.settle(proposal, base[j], (lower[j], upper[j]), propose);
+            }
+            Some(directions) => {
+                for (j, direction) in directions[..n].iter().enumerate() {
+                    let length = (step.sigma * units[j] * child[j]).abs();
+                    child[j] = base[j] + length * T::of(f64::from(*direction));
+                }
+            }
         }
+        self.settle(step, step.sigma, rng, child);
     }
 
     /// All components by one vector from N(0, sigma^2 C).
@@ -141,12 +143,24 @@ impl<T: Scalar> AepMutation<T> {
         }
         let against = step.directions.is_some_and(|d| self.along(child, d) < T::zero());
         let sigma = if against { -step.sigma } else { step.sigma };
-        let (lower, upper) = (step.domain.search_lower(), step.domain.search_upper());
-        for (j, (child, &base)) in child.iter_mut().zip(step.base).enumerate() {
-            let again = || base + sigma * self.steps.units[j] * random::normal::<T>(rng);
-            let proposal = base + sigma * *child;
-            *child = self.config.border.settle(proposal, base, (lower[j], upper[j]), again);
+        for (child, base) in child.iter_mut().zip(step.base) {
+            *child = *base + sigma * *child;
         }
+        self.settle(step, sigma, rng, child);
+    }
+
+    /// Treats the components that left the domain; a repeated step keeps its direction.
+    #[inline]
+    fn settle(&self, step: &Step<'_, T>, sigma: T, rng: &mut Stream, child: &mut [T]) {
+        let limits = (step.domain.search_lower(), step.domain.search_upper());
+        self.config.border.settle(child, step.base, limits, |j| {
+            let length = sigma * self.steps.units[j] * random::normal::<T>(rng);
+            let length = match step.directions {
+                Some(directions) => length.abs() * T::of(f64::from(directions[j])),
+                None => length,
+            };
+            step.base[j] + length
+        });
     }
 
     /// How far a vector points along the directions, every component in its own unit.

@@ -204,13 +204,12 @@ impl<T: Scalar> Run<T> {
 
 /// Scaled to [0, 1] to search coordinates, mirrored into the domain.
 fn phenotype<T: Scalar>(domain: &Domain<T>, genotype: &[f64]) -> Vec<T> {
+    let n = genotype.len();
+    let mut inside = genotype.to_vec();
+    Border::Reflect.settle(&mut inside, &vec![0.5; n], (&vec![0.0; n], &vec![1.0; n]), |_| 0.5);
     let limits = domain.search_lower().iter().zip(domain.search_upper());
-    let mirror = |g: f64| Border::Reflect.settle(g, 0.5, (0.0, 1.0), || 0.5);
-    let scaled = genotype
-        .iter()
-        .zip(limits)
-        .map(|(&g, (&lo, &hi))| (lo + (hi - lo) * T::of(mirror(g))).max(lo).min(hi));
-    scaled.collect()
+    let scale = |(g, (lo, hi)): (f64, (&T, &T))| (*lo + (*hi - *lo) * T::of(g)).max(*lo).min(*hi);
+    inside.into_iter().zip(limits).map(scale).collect()
 }
 
 /// Search coordinates scaled to [0, 1].

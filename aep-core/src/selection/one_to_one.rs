@@ -32,7 +32,7 @@ impl<T: Scalar, I: Individual<T>> Selection<T, I> for OneToOne {
             if self.replaces(children.costs[i], parents.costs[i]) {
                 let (from, to) = (parents.positions.row(i), children.positions.row(i));
                 children.individuals[i].won(from, to);
-                parents.swap_with(i, children, i);
+                parents.take(i, children, i);
             } else {
                 parents.individuals[i].survived();
             }

@@ -81,7 +81,7 @@ impl<T: Scalar, I: Individual<T>> Selection<T, I> for Tournament {
         let newcomers = survivors.iter().filter(|&&candidate| candidate >= count);
         let vacant = losers.iter().filter(|&&candidate| candidate < count);
         for (&slot, &candidate) in vacant.zip(newcomers) {
-            parents.swap_with(slot, children, candidate - count);
+            parents.take(slot, children, candidate - count);
         }
     }
 }

@@ -31,6 +31,7 @@ pub mod quadratic_drag;
 pub mod ripple;
 pub mod rising_static_friction;
 pub mod saturation;
+pub mod shear_thinning;
 pub mod spring;
 pub mod stribeck;
 pub mod viscous;
@@ -125,6 +126,7 @@ pub static ALL: &[&dyn Effect] = &[
     &quadratic_drag::QuadraticDrag,
     &load_friction::LoadFriction,
     &drift::Drift,
+    &shear_thinning::ShearThinning,
     &actuator_lag::ActuatorLag,
     &input_delay::InputDelay,
     &saturation::Saturation,

@@ -7,10 +7,11 @@ use super::preparation::Prepared;
 use crate::axis::{Axis, Quantity};
 use crate::effects::{self, About};
 
-/// Most trial periods of a ripple: down to 1/350 of the stroke. Finer ones are not looked for.
-const MOST_PERIODS: usize = 500;
-/// Spacing of trial periods in spatial frequency times stroke. A line is 1 wide.
-const LINE_WIDTH: f64 = 0.7;
+/// Most trial periods of a ripple: down to 1/280 of the stroke. Finer ones are not looked for.
+const MOST_PERIODS: usize = 700;
+/// Spacing of trial periods in spatial frequency times stroke. A line is 1
+/// wide, one of the second harmonic half as much.
+const LINE_WIDTH: f64 = 0.4;
 
 /// Sizes of the recording.
 pub struct Limits {
@@ -77,7 +78,7 @@ impl Limits {
 
     /// An effect as a term; parameters that are not fitted are left out.
     pub fn term(&self, about: &About) -> Term {
-        let fitted = about.parameters.iter().filter(|p| p.role != effects::Role::Fixed);
+        let fitted = about.parameters.iter().filter(|parameter| !is_fixed(parameter));
         Term {
             name: about.name.into(),
             title: about.title.into(),
@@ -149,6 +150,12 @@ impl Limits {
         let start = if (lower..=upper).contains(&typical) { typical } else { middle };
         (lower, upper, start)
     }
+}
+
+/// Parameters that this comparison takes from the recording: those that are fixed by nature (a
+/// stroke), and the neutral position of a spring, which only shifts the offset.
+pub fn is_fixed(parameter: &effects::Parameter) -> bool {
+    parameter.role == effects::Role::Fixed || parameter.name == "x_0"
 }
 
 /// A lag or a delay of 0 is none, and a small one acts in proportion: in a comparison of forces it

@@ -8,13 +8,15 @@ mod filter;
 mod limits;
 mod plots;
 mod preparation;
+mod views;
 mod words;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use missing_physics::basis::{dot, gram, solve};
-use missing_physics::report::Plot;
+use missing_physics::report::{Plot, SplitError};
+use missing_physics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
 
 pub use preparation::{PreparationError, Prepared};
@@ -22,7 +24,7 @@ pub use words::engineering;
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
-use crate::effects::{Effect, Library, Role, Slot};
+use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
 
 /// What can be chosen.
@@ -36,6 +38,7 @@ pub struct Options {
 
 /// See the module.
 pub struct FrictionFamily {
+    recording: Recording,
     prepared: Prepared,
     axis: Axis,
     effects: Vec<&'static dyn Effect>,
@@ -71,6 +74,7 @@ impl FrictionFamily {
         let coordinates = coordinates::coordinates(&prepared, axis, recording);
         let regimes = coordinates::regimes(&prepared);
         let mut family = Self {
+            recording: recording.clone(),
             axis,
             effects,
             terms,
@@ -117,9 +121,10 @@ impl FrictionFamily {
             model = model.with_effect(effect)?;
             let mut values = values.iter();
             for parameter in effect.about().parameters {
-                let value = match parameter.role {
-                    Role::Fixed => self.fixed(parameter.name),
-                    _ => values.next().copied(),
+                let value = if limits::is_fixed(parameter) {
+                    self.fixed(parameter.name)
+                } else {
+                    values.next().copied()
                 };
                 if let Some(value) = value {
                     model.set(&address(effect, parameter.name), value)?;
@@ -147,16 +152,18 @@ impl FrictionFamily {
             let parameters = term.effect().about().parameters.iter().zip(term.values());
             fitted
                 .values
-                .extend(parameters.filter(|(p, _)| p.role != Role::Fixed).map(|(_, value)| *value));
+                .extend(parameters.filter(|(p, _)| !limits::is_fixed(p)).map(|(_, value)| *value));
         }
         Ok(fitted)
     }
 
-    /// Parameters that are not fitted: the stroke is that of the recording.
+    /// Parameters that are not fitted: the stroke is that of the recording, a spring is relaxed in
+    /// its middle.
     fn fixed(&self, name: &str) -> Option<f64> {
         match name {
             "start" => Some(self.stroke.0),
             "end" => Some(self.stroke.1),
+            "x_0" => Some(f64::midpoint(self.stroke.0, self.stroke.1)),
             _ => None,
         }
     }
@@ -301,6 +308,13 @@ impl ModelFamily for FrictionFamily {
 
     fn blocks(&self) -> Vec<Range<usize>> {
         self.blocks.clone()
+    }
+
+    fn views(&self, fitted: &Fitted, split: &Split) -> BTreeMap<String, SplitError> {
+        self.model(fitted).map_or_else(
+            |_| BTreeMap::new(),
+            |model| views::views(&model, &self.recording, &self.time, split),
+        )
     }
 
     fn noise(&self) -> BTreeMap<String, f64> {

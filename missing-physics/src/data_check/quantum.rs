@@ -4,6 +4,8 @@
 const FEWEST: usize = 8;
 /// Share of the increments that must be whole multiples of the count.
 const SHARE: f64 = 0.98;
+/// A decimal increment below this share of the span is the last digit of the file.
+const LAST_DIGIT: f64 = 5e-7;
 /// How far from a whole multiple an increment may be, in counts.
 const TOLERANCE: f64 = 0.1;
 
@@ -27,7 +29,15 @@ pub(super) fn of(values: &[f64]) -> Option<f64> {
     // The very smallest step may be a freak; where most steps are long, only a few are one count.
     let guesses = [0, steps.len() / 200, steps.len() / 50, steps.len() / 10];
     let mut counts = guesses.into_iter().filter_map(|index| refined(&steps, steps[index]));
-    counts.find(|quantum| is_count(&steps, *quantum))
+    let quantum = counts.find(|quantum| is_count(&steps, *quantum))?;
+    (!is_last_digit(quantum, span)).then_some(quantum)
+}
+
+/// Whether the increment is the last digit of the file, not a count of the instrument: a power of
+/// ten far below all that happens.
+fn is_last_digit(quantum: f64, span: f64) -> bool {
+    let power = quantum.log10();
+    (power - power.round()).abs() < 1e-3 && quantum < LAST_DIGIT * span
 }
 
 /// With a handful of levels, such as those of a coarse sensor, all steps must agree.

@@ -1,0 +1,90 @@
+//! From the arguments to the exit code.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::commands::Command;
+use crate::failure::{BAD_INPUT, Failure};
+use crate::output;
+
+/// Tells what a model of a drive lacks: load a measurement, fit the model, see where it fails, learn
+/// which physical effect is missing, add it, watch the error fall.
+///
+/// Start with `aep discover`: it runs on an example with a hidden effect. Then `aep discover
+/// YOUR.csv`.
+#[derive(Parser)]
+#[command(name = "aep", version, max_term_width = 100, after_help = EXAMPLES)]
+struct Cli {
+    #[command(flatten)]
+    global: Global,
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  aep discover                                  the example that comes with the program
+  aep discover run.csv --html report.html       columns time_s,force_N,position_m
+  aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
+  aep effects                                   what can be found, with equations
+
+Exit codes: 0 done, 1 failed, 2 wrong usage or bad input.";
+
+/// What every command understands.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct Global {
+    /// Threads to use; by default one per processor. Results do not depend on it.
+    #[arg(long, global = true, value_name = "N", help_heading = "Running")]
+    threads: Option<std::num::NonZeroUsize>,
+    /// Print only errors; files are still written.
+    #[arg(long, short, global = true, help_heading = "Running")]
+    pub quiet: bool,
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(answer) => {
+            // Help and version come this way, too. If even that cannot be printed, nobody is there.
+            let _ = answer.print();
+            return ExitCode::from(if answer.use_stderr() { BAD_INPUT } else { 0 });
+        }
+    };
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::error(&failure);
+            ExitCode::from(failure.code)
+        }
+    }
+}
+
+fn run(cli: Cli) -> Result<(), Failure> {
+    if let Some(threads) = cli.global.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+        pool.build_global().map_err(|error| Failure::failed(error.to_string()))?;
+    }
+    cli.command.run(cli.global)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_contradict_each_other_nowhere() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn every_command_has_an_example_and_says_what_it_does() {
+        for command in Cli::command().get_subcommands() {
+            assert!(command.get_about().is_some(), "{} has no description", command.get_name());
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            assert!(help.contains("aep "), "{} has no example", command.get_name());
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Arguments that several commands share.
+
+mod data;
+mod effects;
+mod run;
+
+pub use data::{DataArgs, MappingArgs};
+pub use effects::{EffectNames, known};
+pub use run::{OutputArgs, RunArgs};

@@ -1,0 +1,136 @@
+//! `aep discover`: the main job.
+
+use std::path::{Path, PathBuf};
+
+use missing_physics::data_check::check;
+use missing_physics::{Discovery, discover};
+
+use crate::app::Global;
+use crate::args::{EffectNames, MappingArgs, OutputArgs, RunArgs};
+use crate::failure::Failure;
+use crate::output::{self, Columns, heading, written};
+use crate::progress::Progress;
+use crate::report::{Kind, Report};
+use crate::steps;
+
+/// Find out which physical effect a model of the drive lacks
+///
+/// Fits the base model, shows where it fails, ranks every effect of the library against placebos,
+/// adds the best, refits, and repeats until nothing is gained on data that was held out.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
+    /// MATLAB v5/v7; without it, the example that comes with the program. Names, units and gains may also
+    /// stand in DATA.toml beside it
+    #[arg(value_name = "DATA")]
+    data: Option<PathBuf>,
+    /// Effects of the model to begin with
+    #[arg(long, value_name = "EFFECTS", default_value = "coulomb,viscous,offset")]
+    base: EffectNames,
+    /// Write the last model
+    #[arg(long, short = 'o', value_name = "MODEL.json")]
+    output: Option<PathBuf>,
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    #[arg(long, value_name = "HZ", value_parser = super::positive)]
+    bandwidth: Option<f64>,
+    #[command(flatten)]
+    results: OutputArgs,
+    #[command(flatten)]
+    run: RunArgs,
+    #[command(flatten)]
+    mapping: MappingArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  aep discover                                           the example, with an effect hidden in it
+  aep discover run.csv --html report.html                a report with plots
+  aep discover run.csv --base coulomb,viscous --json -   for scripts
+  aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
+  aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found";
+
+/// Runs the command.
+pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let base = args.base.checked()?;
+    let settings = args.run.settings(base)?;
+    let loaded = match &args.data {
+        Some(path) => args.mapping.read(path)?,
+        None => crate::example::load()?,
+    };
+    let quiet = global.quiet || args.results.json_on_stdout();
+    let data = check(&loaded.recording);
+    if !quiet {
+        output::print(&output::data_check(&loaded, &data))?;
+    }
+    let mut progress = Progress::new(quiet);
+    progress.say("preparing the motion");
+    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    progress.say("fitting the base model");
+    let discovery = discover(&family, &settings, &mut progress)?;
+    drop(progress);
+    let report =
+        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data };
+    let mut files = report.save(&args.results)?;
+    if let Some(path) = &args.output {
+        files += &save_model(&family, &discovery, path)?;
+    }
+    if quiet {
+        return Ok(());
+    }
+    let next = args.data.as_deref().map_or_else(crate::example::next, |path| next(args, path));
+    let files = if files.is_empty() { files } else { format!("\n{files}") };
+    output::print(&(story(&discovery) + &files + &next))
+}
+
+fn save_model(
+    family: &friction_ident::family::FrictionFamily,
+    discovery: &Discovery,
+    path: &Path,
+) -> Result<String, Failure> {
+    let Some(last) = discovery.ladder.last() else {
+        return Ok(String::new());
+    };
+    let model = steps::model(family, last)?;
+    output::save(path, &(model.to_json()? + "\n"))?;
+    Ok(written("model", path))
+}
+
+/// The loop as it went: where the base model failed, what was tried, what was gained.
+fn story(discovery: &Discovery) -> String {
+    let mut text = String::new();
+    if let Some(base) = discovery.ladder.first() {
+        text += &heading(&format!("Where the base model fails: {}", base.effects.join(" + ")));
+        text += &output::regimes(&discovery.regimes_base);
+        text += "\n";
+        text += &output::where_it_fails(&discovery.where_base);
+    }
+    for (rung, candidates) in discovery.ranking.iter().enumerate() {
+        let added = discovery.ladder.get(rung + 1).and_then(|next| next.added.as_deref());
+        let outcome = match added {
+            Some(effect) => format!("{effect} is added"),
+            None => "nothing is added".to_owned(),
+        };
+        text += &heading(&format!("Which effect is missing, rung {}: {outcome}", rung + 1));
+        text += &output::ranking(candidates, Columns::Best);
+    }
+    if discovery.ladder.len() > 1 {
+        text += &heading("Where the last model fails");
+        text += &output::regimes(&discovery.regimes);
+    }
+    if let Some(last) = discovery.ladder.last() {
+        text += &heading("Parameters of the last model");
+        text += &output::parameters(last);
+    }
+    text += &heading("The ladder");
+    text += &output::ladder(discovery);
+    text + &output::verdict(discovery)
+}
+
+fn next(args: &Args, path: &Path) -> String {
+    if args.results.html.is_some() {
+        return String::new();
+    }
+    let command = format!("aep discover {} --html report.html", path.display());
+    format!("\n{}\n", output::dim(&format!("All this with plots: {command}")))
+}

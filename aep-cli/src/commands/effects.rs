@@ -1,0 +1,86 @@
+//! `aep effects`: what there is to be found.
+
+use std::fmt::Write;
+
+use friction_ident::{Axis, Library};
+use missing_physics::quantity::number;
+
+use crate::app::Global;
+use crate::args::known;
+use crate::failure::Failure;
+use crate::output::{self, Align, Table, bold, dim, heading};
+
+/// List the effects a model can have, with equations and parameters
+#[derive(clap::Args)]
+#[command(after_help = "Examples:\n  aep effects             all of them, one line each\n  aep effects stribeck    everything about one")]
+pub struct Args {
+    /// Say everything about this one
+    #[arg(value_name = "EFFECT")]
+    effect: Option<String>,
+    /// Units and ranges of a rotary axis
+    #[arg(long)]
+    rotary: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let axis = if args.rotary { Axis::Rotary } else { Axis::Linear };
+    let text = match &args.effect {
+        None => list(),
+        Some(name) => about(&known(&name.to_lowercase())?, axis)?,
+    };
+    if global.quiet { Ok(()) } else { output::print(&text) }
+}
+
+fn list() -> String {
+    let mut table =
+        Table::new(&[("effect", Align::Left), ("what it is", Align::Left), ("adds to the model", Align::Left)]);
+    for effect in Library::builtin().effects() {
+        let about = effect.about();
+        table.row([about.name.to_owned(), about.title.to_owned(), about.equation.to_owned()]);
+    }
+    let hint = dim("v velocity, x position, s = sign of v; 'aep effects NAME' says everything about one");
+    format!("{}\n {hint}\n", table.text())
+}
+
+fn about(name: &str, axis: Axis) -> Result<String, Failure> {
+    let library = Library::builtin();
+    let effect = library.find(name)?;
+    let about = effect.about();
+    let mut text = heading(&format!("{}: {}", about.name, about.title));
+    let slots: Vec<&str> = about.slots.iter().map(|slot| slot.name()).collect();
+    let forms: Vec<&str> = effect.forms().iter().map(|form| form.about().name).collect();
+    for (title, content) in [
+        ("adds to the model", about.equation),
+        ("acts on", &slots.join(", ")),
+        ("shows in the residual", about.shows),
+        ("source", about.reference),
+        ("other forms", &forms.join(", ")),
+    ] {
+        if !content.is_empty() {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, " {}: {content}", bold(title));
+        }
+    }
+    let mut table = Table::new(&[
+        ("parameter", Align::Left),
+        ("meaning", Align::Left),
+        ("unit", Align::Left),
+        ("typical", Align::Right),
+        ("searched between", Align::Left),
+    ]);
+    for parameter in about.parameters {
+        let (low, high) = parameter.range(axis);
+        table.row([
+            parameter.name.to_owned(),
+            parameter.meaning.to_owned(),
+            axis.unit(parameter.quantity).to_owned(),
+            number(parameter.typical(axis)),
+            format!("{} .. {}", number(low), number(high)),
+        ]);
+    }
+    if !about.parameters.is_empty() {
+        text.push_str(&table.text());
+    }
+    Ok(text)
+}

@@ -1,0 +1,90 @@
+//! `aep extend`: one effect more, refitted.
+
+use std::path::PathBuf;
+
+use missing_physics::data_check::check;
+
+use crate::app::Global;
+use crate::args::{DataArgs, OutputArgs, known};
+use crate::failure::Failure;
+use crate::output::{self, heading, written};
+use crate::progress::Progress;
+use crate::report::{Kind, Report};
+use crate::steps;
+
+/// Add an effect to a model, refit it, and print before and after
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+    /// The model, as written by identify, extend or discover
+    #[arg(long, value_name = "MODEL.json")]
+    model: PathBuf,
+    /// The effect to add
+    #[arg(long, value_name = "EFFECT")]
+    add: String,
+    /// Write the extended model
+    #[arg(long, short = 'o', value_name = "MODEL2.json")]
+    output: PathBuf,
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    #[arg(long, value_name = "HZ", value_parser = super::positive)]
+    bandwidth: Option<f64>,
+    /// Seed of every random choice
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    results: OutputArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  aep extend run.csv --model model.json --add stribeck -o better.json";
+
+/// Runs the command.
+pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let model = steps::read_model(&args.model)?;
+    let added = known(&args.add.to_lowercase())?;
+    let mut effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
+    if effects.contains(&added) {
+        return Err(Failure::bad_input(format!("the model has '{added}' already"))
+            .in_file(&args.model)
+            .with_hint("'aep suggest' tells which other effect would help"));
+    }
+    effects.push(added.clone());
+    let loaded = args.data.read()?;
+    let quiet = global.quiet || args.results.json_on_stdout();
+    let progress = Progress::new(quiet);
+    progress.say("preparing the motion");
+    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let before = steps::as_given(&family, &model)?;
+    progress.say(format!("refitting with {added}"));
+    let method = steps::method("aep")?;
+    let (after, _) = steps::identify(&family, &effects, &*method, args.seed)?;
+    let rungs = vec![
+        steps::rung(&family, &before, None),
+        steps::rung(&family, &after, Some(added.clone())),
+    ];
+    let last = rungs[1].clone();
+    let extended = steps::model(&family, &last)?;
+    let discovery = steps::comparison(&family, &before, &after, rungs, args.seed);
+    drop(progress);
+    let data = check(&loaded.recording);
+    let report =
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
+    let mut files = report.save(&args.results)?;
+    output::save(&args.output, &(extended.to_json()? + "\n"))?;
+    files += &written("model", &args.output);
+    if quiet {
+        return Ok(());
+    }
+    let text = heading(&format!("Before and after {added}"))
+        + &output::ladder(&discovery)
+        + &heading("Parameters")
+        + &output::parameters(&last)
+        + &heading("Where it fails now")
+        + &output::regimes(&discovery.regimes)
+        + "\n"
+        + &files;
+    output::print(&text)
+}

@@ -1,0 +1,81 @@
+//! `aep identify`: the parameters of a given model.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use missing_physics::data_check::check;
+
+use crate::app::Global;
+use crate::args::{DataArgs, EffectNames, OutputArgs};
+use crate::failure::Failure;
+use crate::output::{self, heading, written};
+use crate::progress::Progress;
+use crate::report::{Kind, Report};
+use crate::steps::{self, ALGORITHMS};
+
+/// Identify the parameters of a model made of given effects
+///
+/// Fits on two thirds of the data, in blocks, and tells the error on the rest.
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    #[command(flatten)]
+    data: DataArgs,
+    /// Effects of the model; the mass is part of every model
+    #[arg(long, value_name = "EFFECTS")]
+    effects: EffectNames,
+    /// Optimizer of the shape parameters
+    #[arg(long, default_value = "aep", value_parser = PossibleValuesParser::new(ALGORITHMS.iter().map(|a| a.0)))]
+    algorithm: String,
+    /// Seed of every random choice
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    #[arg(long, value_name = "HZ", value_parser = super::positive)]
+    bandwidth: Option<f64>,
+    /// Write the model
+    #[arg(long, short = 'o', value_name = "MODEL.json")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    results: OutputArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  aep identify run.csv --effects coulomb,viscous,offset -o model.json
+  aep identify run.csv --effects coulomb,viscous,stribeck --algorithm meta-ep";
+
+/// Runs the command.
+pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let effects = args.effects.checked()?;
+    let loaded = args.data.read()?;
+    let quiet = global.quiet || args.results.json_on_stdout();
+    let progress = Progress::new(quiet);
+    progress.say("preparing the motion");
+    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    progress.say(format!("identifying {}", effects.join(" + ")));
+    let method = steps::method(&args.algorithm)?;
+    let (fit, evaluations) = steps::identify(&family, &effects, &*method, args.seed)?;
+    let rung = steps::rung(&family, &fit, None);
+    let model = steps::model(&family, &rung)?;
+    let discovery = steps::comparison(&family, &fit, &fit, vec![rung.clone()], args.seed);
+    drop(progress);
+    let data = check(&loaded.recording);
+    let report =
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
+    let mut files = report.save(&args.results)?;
+    if let Some(path) = &args.output {
+        output::save(path, &(model.to_json()? + "\n"))?;
+        files += &written("model", path);
+    }
+    if quiet {
+        return Ok(());
+    }
+    let title = format!("{} by {} ({evaluations} evaluations)", effects.join(" + "), args.algorithm);
+    let text = heading(&title)
+        + &output::parameters(&rung)
+        + &heading("Errors")
+        + &output::ladder(&discovery)
+        + &files;
+    output::print(&text)
+}

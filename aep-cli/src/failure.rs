@@ -1,0 +1,105 @@
+//! What the user is told when something goes wrong: what, where, how to mend it, and an exit code.
+
+use std::path::Path;
+
+use aep_data::{DataError, SaveError};
+use friction_ident::ModelError;
+use friction_ident::effects::UnknownEffect;
+use friction_ident::family::PreparationError;
+use missing_physics::DiscoverError;
+
+/// Exit code of wrong usage and bad input.
+pub const BAD_INPUT: u8 = 2;
+/// Exit code of everything else that fails.
+pub const FAILED: u8 = 1;
+
+/// Why a command ends without a result.
+#[derive(Debug)]
+pub struct Failure {
+    /// What is wrong.
+    pub what: String,
+    /// Where it is: file, line, column.
+    pub place: Option<String>,
+    /// How to mend it.
+    pub hint: Option<String>,
+    /// Exit code.
+    pub code: u8,
+}
+
+impl Failure {
+    /// Something wrong with what the user gave.
+    pub fn bad_input(what: impl Into<String>) -> Self {
+        Self { what: what.into(), place: None, hint: None, code: BAD_INPUT }
+    }
+
+    /// Something else.
+    pub fn failed(what: impl Into<String>) -> Self {
+        Self { code: FAILED, ..Self::bad_input(what) }
+    }
+
+    /// The same with a way to mend it.
+    #[must_use]
+    pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// The same with the file it is in.
+    #[must_use]
+    pub fn in_file(mut self, path: &Path) -> Self {
+        self.place = Some(path.display().to_string());
+        self
+    }
+
+    /// The first line says what, the others how to mend it.
+    pub fn from_lines(text: &str) -> Self {
+        let (what, hint) = text.split_once('\n').unwrap_or((text, ""));
+        let failure = Self::bad_input(what);
+        if hint.is_empty() { failure } else { failure.with_hint(hint) }
+    }
+}
+
+impl From<DataError> for Failure {
+    fn from(error: DataError) -> Self {
+        Self {
+            what: error.problem.to_string(),
+            place: Some(error.place()),
+            hint: error.hint(),
+            code: BAD_INPUT,
+        }
+    }
+}
+
+impl From<SaveError> for Failure {
+    fn from(error: SaveError) -> Self {
+        Self::bad_input(format!("cannot write the file: {}", error.source))
+            .in_file(&error.path)
+            .with_hint("check that the folder is there, may be written to, and has room")
+    }
+}
+
+impl From<ModelError> for Failure {
+    fn from(error: ModelError) -> Self {
+        Self::from_lines(&error.to_string())
+    }
+}
+
+impl From<UnknownEffect> for Failure {
+    fn from(error: UnknownEffect) -> Self {
+        Self::from_lines(&error.to_string())
+    }
+}
+
+impl From<DiscoverError> for Failure {
+    fn from(error: DiscoverError) -> Self {
+        Self::bad_input(error.to_string()).with_hint("'aep effects' lists them with equations")
+    }
+}
+
+impl From<PreparationError> for Failure {
+    fn from(error: PreparationError) -> Self {
+        Self::bad_input(error.to_string()).with_hint(
+            "record a motion that reverses several times and covers slow and fast speeds",
+        )
+    }
+}

@@ -1,0 +1,71 @@
+//! What the user sees: text on standard output, errors on standard error, files.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+use std::path::Path;
+
+use anstyle::{AnsiColor, Style};
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+mod bars;
+mod check;
+mod discovery;
+mod style;
+mod table;
+
+pub use check::data_check;
+pub use discovery::{Columns, ladder, parameters, ranking, regimes, verdict, where_it_fails};
+pub use style::{bold, dim, heading};
+pub use table::{Align, Table};
+
+/// Prints to standard output; without colours where nobody would see them.
+pub fn print(text: &str) -> Result<(), Failure> {
+    let mut out = anstream::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        // `aep ... | head` is no failure.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result.map_err(|error| Failure::failed(format!("cannot print: {error}"))),
+    }
+}
+
+/// Prints a failure: what, where, and how to mend it on a line of its own.
+pub fn error(failure: &Failure) {
+    let red = Style::new().bold().fg_color(Some(AnsiColor::Red.into()));
+    let blue = Style::new().bold().fg_color(Some(AnsiColor::Cyan.into()));
+    let mut text = format!("{red}error:{red:#} {}\n", failure.what);
+    if let Some(place) = &failure.place {
+        text.push_str(&format_lines("  ", place));
+    }
+    if let Some(hint) = &failure.hint {
+        let hint = hint.replace('\n', "\n      ");
+        let _ = writeln!(text, "{blue}hint:{blue:#} {hint}");
+    }
+    // Where standard error is closed, nobody is left to tell.
+    let _ = anstream::stderr().lock().write_all(text.as_bytes());
+}
+
+fn format_lines(indent: &str, text: &str) -> String {
+    text.lines().map(|line| format!("{indent}{line}\n")).collect::<Vec<String>>().concat()
+}
+
+/// Writes a file, completely or not at all; `-` is standard output.
+pub fn save(path: &Path, text: &str) -> Result<(), Failure> {
+    if path.as_os_str() == "-" {
+        return print(text);
+    }
+    Ok(aep_data::save(path, text.as_bytes())?)
+}
+
+/// Writes `value` as JSON.
+pub fn save_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value);
+    let text = text.map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;
+    save(path, &(text + "\n"))
+}
+
+/// The line that says a file was written.
+pub fn written(what: &str, path: &Path) -> String {
+    format!("{} {}\n", dim(&format!("{what} written to")), path.display())
+}

@@ -1,0 +1,69 @@
+//! The check of the data.
+
+use std::fmt::Write;
+
+use aep_data::Loaded;
+use anstyle::AnsiColor;
+use missing_physics::data_check::{DataCheck, Severity};
+use missing_physics::quantity::{percent, quantity};
+
+use super::style::{dim, heading, paint};
+use super::table::{Align, Table};
+
+/// What was read, and what is to be known of it before any model.
+pub fn data_check(loaded: &Loaded, check: &DataCheck) -> String {
+    let mut text = heading(&format!("The data: {}", loaded.recording.name()));
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, " {}", overview(loaded, check));
+    text.push_str(&channels(loaded, check));
+    for finding in &check.findings {
+        let mark = match finding.severity {
+            Severity::Info => dim("·"),
+            Severity::Warning => paint(AnsiColor::Yellow, "!"),
+            Severity::Serious => paint(AnsiColor::Red, "!!"),
+        };
+        let _ = writeln!(text, " {mark} {}", finding.text);
+    }
+    text
+}
+
+fn overview(loaded: &Loaded, check: &DataCheck) -> String {
+    let pieces = match check.segments {
+        1 => String::new(),
+        pieces => format!(" in {pieces} segments"),
+    };
+    let layout = loaded.layout.map(|name| format!("; recognised as {name}")).unwrap_or_default();
+    format!(
+        "{} samples{pieces} over {}, one every {}{layout}",
+        check.samples,
+        quantity(check.sampling.duration_s, "s"),
+        quantity(check.sampling.interval_s, "s"),
+    )
+}
+
+fn channels(loaded: &Loaded, check: &DataCheck) -> String {
+    let mut table = Table::new(&[
+        ("channel", Align::Left),
+        ("read from", Align::Left),
+        ("smallest", Align::Right),
+        ("largest", Align::Right),
+        ("rms", Align::Right),
+        ("one count", Align::Right),
+        ("held at a limit", Align::Left),
+    ]);
+    for channel in &check.channels {
+        let origin = loaded.origins.iter().find(|origin| origin.channel == channel.name);
+        let value = |value: f64| quantity(value, &channel.unit);
+        let held = channel.saturation.iter().map(|limit| percent(limit.share));
+        table.row([
+            channel.name.clone(),
+            origin.map(|origin| origin.column.clone()).unwrap_or_default(),
+            value(channel.min),
+            value(channel.max),
+            value(channel.rms),
+            channel.quantum.map_or_else(|| "-".to_owned(), value),
+            held.collect::<Vec<String>>().join(", "),
+        ]);
+    }
+    table.text()
+}

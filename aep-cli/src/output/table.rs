@@ -1,0 +1,70 @@
+//! Tables: a heading, a line, rows; numbers to the right.
+
+use comfy_table::{
+    Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, TableStyle,
+};
+
+/// Where the cells of a column stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    /// Words.
+    Left,
+    /// Numbers.
+    Right,
+    /// Bars, which are words in colour.
+    Bar,
+}
+
+/// A table in the making.
+pub struct Table {
+    table: comfy_table::Table,
+    columns: Vec<Align>,
+}
+
+/// A line under the headings and nothing else.
+const STYLE: TableStyle =
+    TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
+/// Width of a table where there is no terminal to ask.
+const WIDTH: u16 = 110;
+
+impl Table {
+    /// A table with these headings.
+    pub fn new(headings: &[(&str, Align)]) -> Self {
+        let mut table = comfy_table::Table::new();
+        table.load_style(STYLE);
+        table.set_content_arrangement(ContentArrangement::Dynamic);
+        table.enforce_styling();
+        if !table.is_tty() {
+            table.set_width(WIDTH);
+        }
+        let columns: Vec<Align> = headings.iter().map(|(_, align)| *align).collect();
+        table.set_header(headings.iter().map(|(text, align)| {
+            Cell::new(text).set_alignment(alignment(*align)).add_attribute(Attribute::Dim)
+        }));
+        Self { table, columns }
+    }
+
+    /// One row more.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        let cells = cells.into_iter().zip(&self.columns).map(|(text, align)| {
+            let cell = Cell::new(text).set_alignment(alignment(*align));
+            if *align == Align::Bar { cell.fg(Color::Blue) } else { cell }
+        });
+        self.table.add_row(cells.collect::<Vec<Cell>>());
+    }
+
+    /// The table as text, one line at the end.
+    pub fn text(&self) -> String {
+        let text = self.table.to_string();
+        let lines: Vec<String> =
+            text.lines().map(|line| format!(" {}\n", line.trim_end())).collect();
+        lines.concat()
+    }
+}
+
+fn alignment(align: Align) -> CellAlignment {
+    match align {
+        Align::Right => CellAlignment::Right,
+        Align::Left | Align::Bar => CellAlignment::Left,
+    }
+}

@@ -1,0 +1,101 @@
+//! The files of a run: JSON by the contract, and the page.
+
+use aep_data::Loaded;
+use aep_studio::Source;
+use missing_physics::Discovery;
+use missing_physics::data_check::DataCheck;
+use serde_json::{Value, json};
+
+use crate::args::OutputArgs;
+use crate::failure::Failure;
+use crate::output::{save, save_json, written};
+
+/// What was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// What is missing: a verdict.
+    Discovery,
+    /// How well a model fits: no verdict.
+    Comparison,
+}
+
+/// All that a report tells.
+pub struct Report<'a> {
+    /// What was asked.
+    pub kind: Kind,
+    /// What was found.
+    pub discovery: &'a Discovery,
+    /// The recording and how it was read.
+    pub loaded: &'a Loaded,
+    /// What was seen in the data.
+    pub check: &'a DataCheck,
+}
+
+impl Report<'_> {
+    /// Writes the files that were asked for; returns what to tell the user.
+    pub fn save(&self, args: &OutputArgs) -> Result<String, Failure> {
+        let mut said = String::new();
+        if let Some(path) = &args.json {
+            save_json(path, &self.json()?)?;
+            said += &written("results", path);
+        }
+        if let Some(path) = &args.html {
+            save(path, &self.page())?;
+            said += &written("report", path);
+        }
+        Ok(said)
+    }
+
+    fn page(&self) -> String {
+        let source = source(self.loaded);
+        match self.kind {
+            Kind::Discovery => aep_studio::report::html(self.discovery, &source, self.check),
+            Kind::Comparison => aep_studio::report::comparison(self.discovery, &source, self.check),
+        }
+    }
+
+    fn json(&self) -> Result<Value, Failure> {
+        let broken =
+            |error: serde_json::Error| Failure::failed(format!("cannot write JSON: {error}"));
+        let mut json = match self.kind {
+            // The curves are for the page.
+            Kind::Discovery => {
+                let bare = Discovery { plots: Vec::new(), ..self.discovery.clone() };
+                serde_json::to_value(bare).map_err(broken)?
+            }
+            Kind::Comparison => comparison(self.discovery),
+        };
+        json["recording"] = json!(self.loaded.recording.name());
+        json["data"] = serde_json::to_value(self.check).map_err(broken)?;
+        Ok(json)
+    }
+}
+
+/// The last rung with where it fails.
+fn comparison(discovery: &Discovery) -> Value {
+    let last = discovery.ladder.last();
+    json!({
+        "effects": last.map(|rung| &rung.effects),
+        "parameters": last.map(|rung| &rung.parameters),
+        "error": last.map(|rung| &rung.error),
+        "where": discovery.where_it_fails,
+        "regimes": discovery.regimes,
+        "noise_floor": discovery.noise_floor,
+        "ladder": discovery.ladder,
+        "seed": discovery.seed,
+    })
+}
+
+fn source(loaded: &Loaded) -> Source {
+    let columns = loaded.origins.iter();
+    let columns = columns.map(|o| [o.channel.to_owned(), o.column.clone(), o.unit.to_owned()]);
+    // How the page is made again, quotes where a name has blanks.
+    let words = std::env::args()
+        .skip(1)
+        .map(|word| if word.contains(char::is_whitespace) { format!("'{word}'") } else { word });
+    Source {
+        name: loaded.recording.name().to_owned(),
+        columns: columns.collect(),
+        command: format!("aep {}", words.collect::<Vec<String>>().join(" ")),
+    }
+}

@@ -1,0 +1,156 @@
+//! The steps of the loop that several commands share, as calls of the engine.
+
+use std::path::Path;
+
+use aep_core::{Aep, MetaEp, Method};
+use friction_ident::family::{FrictionFamily, Options};
+use friction_ident::{Library, Model};
+use missing_physics::discover::{evaluate, terms, weights};
+use missing_physics::fit::Fit;
+use missing_physics::report::{Rung, Verdict};
+use missing_physics::split::Split;
+use missing_physics::where_it_fails::{View, coordinates, regimes};
+use missing_physics::{
+    Coordinate, Discovery, Fitted, ModelFamily, Recording, ladder, noise, search, uncertainty,
+};
+
+use crate::failure::Failure;
+
+/// A name and what makes the optimizer.
+type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
+
+/// Optimizers by name.
+pub const ALGORITHMS: &[NamedMethod] =
+    &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
+
+/// The model family of a recording.
+pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
+    Ok(FrictionFamily::new(recording, &Options { bandwidth, library: Library::builtin() })?)
+}
+
+/// Reads MODEL.json.
+pub fn read_model(path: &Path) -> Result<Model, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| {
+        Failure::bad_input(format!("cannot read the model: {error}")).in_file(path).with_hint(
+            "'aep identify DATA --effects coulomb,viscous,offset -o MODEL.json' makes one",
+        )
+    })?;
+    Model::from_json(&text, &Library::builtin()).map_err(|error| Failure::from(error).in_file(path))
+}
+
+/// The blocks of a family that are fitted, as weights, and the split they come from.
+fn split(family: &FrictionFamily) -> (Split, Vec<f64>) {
+    let points = family.target().len();
+    let split = Split::new(points, family.blocks());
+    let fitted = split.fit(points).into_iter().map(|fit| f64::from(u8::from(fit))).collect();
+    (split, fitted)
+}
+
+/// Identifies a model of these effects on the fitted blocks.
+pub fn identify(
+    family: &FrictionFamily,
+    effects: &[String],
+    method: &dyn Method<f64>,
+    seed: u64,
+) -> Result<(Fit, usize), Failure> {
+    let terms = terms(family, effects)?;
+    let (_, fitted) = split(family);
+    let found = search::identify_by(family, &terms, &fitted, seed, method);
+    Ok((found.fit, found.evaluations))
+}
+
+/// The optimizer of this name.
+pub fn method(name: &str) -> Result<Box<dyn Method<f64>>, Failure> {
+    let known = ALGORITHMS.iter().find(|(known, _)| *known == name);
+    let known = known.ok_or_else(|| Failure::bad_input(format!("unknown algorithm '{name}'")))?;
+    Ok(known.1())
+}
+
+/// A given model on this data, nothing fitted.
+pub fn as_given(family: &FrictionFamily, model: &Model) -> Result<Fit, Failure> {
+    same_axis(family, model)?;
+    Ok(evaluate(family, family.fitted(model)?))
+}
+
+/// Refuses a model of a linear axis for rotary data and the other way round.
+pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> {
+    if model.axis() == family.axis() {
+        return Ok(());
+    }
+    Err(other_axis())
+}
+
+/// The failure of a model and data that do not belong together.
+pub fn other_axis() -> Failure {
+    let what = "one of model and data is of a linear axis, the other of a rotary one";
+    Failure::bad_input(what).with_hint("identify a model on this data with 'aep identify'")
+}
+
+/// A fit as a rung: its parameters and errors.
+pub fn rung(family: &FrictionFamily, fit: &Fit, added: Option<String>) -> Rung {
+    let (split, fitted) = split(family);
+    let effects = fit.model.terms.iter().map(|&term| &family.terms()[term]);
+    Rung {
+        added,
+        effects: effects.filter(|term| !term.always).map(|term| term.name.clone()).collect(),
+        parameters: uncertainty::estimates(family, fit, &fitted),
+        error: ladder::errors(family, fit, &split),
+        p_value: None,
+    }
+}
+
+/// What a fit looks like on this data, as a discovery that looks for nothing: errors, where it
+/// fails, noise, curves.
+pub fn comparison(
+    family: &FrictionFamily,
+    base: &Fit,
+    last: &Fit,
+    rungs: Vec<Rung>,
+    seed: u64,
+) -> Discovery {
+    let motion = family.motion();
+    let view = |fit: &Fit| {
+        let weights = weights(family.doubt(), &fit.residual);
+        coordinates(
+            family,
+            &View { residual: &fit.residual, weights: &weights, motion: &motion, seed },
+        )
+    };
+    let quantity = family.quantity();
+    let state: Vec<Coordinate> = family.coordinates().iter().filter(|c| c.state).cloned().collect();
+    let mut noise_floor = family.noise();
+    let floor = noise::floor(&last.residual, &state);
+    noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+    Discovery {
+        verdict: Verdict::NothingMissing,
+        summary: String::new(),
+        added: rungs.iter().filter_map(|rung| rung.added.clone()).collect(),
+        ladder: rungs,
+        ranking: Vec::new(),
+        where_it_fails: view(last),
+        where_base: view(base),
+        regimes: regimes(family, &last.residual),
+        regimes_base: regimes(family, &base.residual),
+        ambiguous: Vec::new(),
+        noise_floor,
+        detection_limits: std::collections::BTreeMap::new(),
+        seed,
+        wall_s: 0.0,
+        notes: Vec::new(),
+        plots: family.plots(&base.model, &last.model),
+    }
+}
+
+/// The plant that a rung describes.
+pub fn model(family: &FrictionFamily, rung: &Rung) -> Result<Model, Failure> {
+    let indices = terms(family, &rung.effects)?;
+    let values = indices.iter().flat_map(|&index| {
+        let term = &family.terms()[index];
+        term.parameters.iter().map(|parameter| {
+            let start = parameter.start;
+            rung.parameters.get(&term.key(parameter)).map_or(start, |estimate| estimate.value)
+        })
+    });
+    let values = values.collect();
+    Ok(family.model(&Fitted { terms: indices, values })?)
+}

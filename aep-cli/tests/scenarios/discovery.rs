@@ -1,0 +1,130 @@
+//! The main job.
+
+use crate::harness::{Desk, shared};
+
+#[test]
+fn without_data_the_example_is_solved_and_the_truth_pointed_at() {
+    let desk = Desk::new();
+    let run = desk.aep("discover --json out.json --html out.html -o model.json");
+    for part in
+        ["The data", "Where the base model fails", "Which effect", "The ladder", "truth.json"]
+    {
+        assert!(run.done().contains(part), "{part}");
+    }
+    let (json, page) = (desk.json("out.json"), desk.read("out.html"));
+    let truth = include_str!("../../../examples/hidden/truth.json");
+    let truth: serde_json::Value = serde_json::from_str(truth).unwrap();
+    assert_eq!(json["verdict"], "effects_found");
+    assert_eq!(json["added"][0], truth["hidden"]);
+    let error = |rung: usize| json["ladder"][rung]["error"]["force_rms_N"]["validation"].as_f64();
+    let last = json["ladder"].as_array().unwrap().len() - 1;
+    let floor = json["noise_floor"]["force_N"].as_f64().unwrap();
+    assert!(error(last).unwrap() < 1.3 * floor && error(0).unwrap() > 3.0 * floor);
+    assert!(page.contains(truth["hidden"].as_str().unwrap()));
+    assert!(desk.read("model.json").contains(truth["hidden"].as_str().unwrap()));
+}
+
+#[test]
+fn the_json_keeps_the_contract() {
+    let desk = Desk::new();
+    desk.aep("discover -q --json out.json --most 1").done();
+    let json = desk.json("out.json");
+    for key in [
+        "verdict",
+        "added",
+        "ladder",
+        "ranking",
+        "where",
+        "ambiguous",
+        "noise_floor",
+        "seed",
+        "wall_s",
+    ] {
+        assert!(json.get(key).is_some(), "{key}");
+    }
+    let rung = &json["ladder"][1];
+    assert!(json["ladder"][0]["added"].is_null() && rung["added"].is_string());
+    let parameter = &rung["parameters"]["coulomb.F_C"];
+    for key in ["value", "low", "high", "unit", "identifiable"] {
+        assert!(parameter.get(key).is_some(), "{key}");
+    }
+    assert!(rung["error"]["force_relative"]["fit"].is_f64());
+    assert!(rung["p_value"].is_f64());
+    for key in ["effect", "gain", "p_value"] {
+        assert!(json["ranking"][0][0].get(key).is_some(), "{key}");
+    }
+    for key in ["coordinate", "share", "p_value", "note"] {
+        assert!(json["where"][0].get(key).is_some(), "{key}");
+    }
+    assert!(json.get("plots").is_none());
+}
+
+#[test]
+fn threads_change_nothing() {
+    let desk = Desk::new();
+    desk.aep("discover -q --json one.json --threads 1").done();
+    desk.aep("discover -q --json two.json --threads 2").done();
+    let result = |name: &str| {
+        let mut json = desk.json(name);
+        json["wall_s"] = 0.into();
+        json
+    };
+    assert_eq!(result("one.json"), result("two.json"));
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_found() {
+    let desk = Desk::new();
+    desk.challenge("nothing", 1, "c");
+    let run = desk.aep("discover c/recording.csv --json out.json");
+    assert!(run.done().contains("NOTHING IS MISSING"));
+    assert_eq!(desk.json("out.json")["verdict"], "nothing_missing");
+}
+
+#[test]
+fn a_time_limit_keeps_what_was_found() {
+    let desk = Desk::new();
+    let run = desk.aep("discover --time-limit 0.000001 --json out.json");
+    run.done();
+    let json = desk.json("out.json");
+    assert_eq!(json["ladder"].as_array().unwrap().len(), 1);
+    assert!(json["notes"][0].as_str().unwrap().contains("Stopped"));
+}
+
+#[test]
+fn flags_read_other_columns_units_and_gains() {
+    let desk = Desk::new();
+    desk.challenge("nothing", 1, "c");
+    let csv = desk.read("c/recording.csv");
+    let mut lines = csv.lines();
+    lines.next();
+    let rows: Vec<String> = lines
+        .map(|line| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            format!("{};{};{}", cells[0] * 1e3, cells[1] / 35.15, cells[2] * 1e3)
+        })
+        .collect();
+    desk.write("volts.csv", format!("t;u_V;x\n{}\n", rows.join("\n")));
+    let flags =
+        "--time-unit ms --force u_V --force-gain 35.15 --position-unit mm --hold zero-order";
+    desk.aep(&format!("discover volts.csv -q --json flags.json {flags}")).done();
+    desk.aep("discover c/recording.csv -q --json plain.json").done();
+    let mass =
+        |name: &str| desk.json(name)["ladder"][0]["parameters"]["mass"]["value"].as_f64().unwrap();
+    assert!((mass("flags.json") / mass("plain.json") - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_published_axis_gives_the_published_error_and_the_known_asymmetry() {
+    let Some(data) = shared("emps/DATA_EMPS.mat") else { return };
+    let desk = Desk::new();
+    let run = desk.aep(&format!("discover {} --json out.json --most 1", data.display()));
+    assert!(run.done().contains("recognised as EMPS"));
+    let json = desk.json("out.json");
+    assert_eq!(json["added"][0], "asymmetry");
+    let error = |rung: usize| {
+        json["ladder"][rung]["error"]["force_relative"]["validation"].as_f64().unwrap()
+    };
+    assert!((error(0) - 0.0408).abs() < 0.0015, "{}", error(0));
+    assert!(error(1) < 0.0326, "{}", error(1));
+}

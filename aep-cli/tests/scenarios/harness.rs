@@ -1,0 +1,90 @@
+//! Running `aep` in a folder of its own.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// What a run of `aep` left.
+pub struct Run {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl Run {
+    /// Standard output of a run that did its work.
+    #[track_caller]
+    pub fn done(&self) -> &str {
+        assert_eq!(self.code, Some(0), "{}{}", self.out, self.err);
+        &self.out
+    }
+
+    /// Standard error of a run that was refused, which must hold all `parts`.
+    #[track_caller]
+    pub fn refused(&self, parts: &[&str]) -> &str {
+        assert_eq!(self.code, Some(2), "{}{}", self.out, self.err);
+        for part in parts {
+            assert!(self.err.contains(part), "'{part}' is not in:\n{}", self.err);
+        }
+        &self.err
+    }
+}
+
+/// A folder to work in.
+pub struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        std::fs::write(self.path(name), content).unwrap();
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.read(name)).unwrap()
+    }
+
+    /// Runs `aep` with the words of `line`.
+    pub fn aep(&self, line: &str) -> Run {
+        let output = Command::new(env!("CARGO_BIN_EXE_aep"))
+            .args(line.split_whitespace())
+            .current_dir(self.folder.path())
+            .env_remove("NO_COLOR")
+            .output()
+            .unwrap();
+        Run {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// A recording with `effect` hidden in it, in the folder `name`.
+    pub fn challenge(&self, effect: &str, seed: u64, name: &str) {
+        self.aep(&format!("challenge --hide {effect} --seed {seed} -o {name}")).done();
+    }
+}
+
+/// A file of the measured data that may lie beside the project; says so where it does not.
+pub fn shared(name: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(name);
+    if path.exists() {
+        return path.canonicalize().ok();
+    }
+    eprintln!("skipped: {} is not there", path.display());
+    None
+}

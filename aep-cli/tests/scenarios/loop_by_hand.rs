@@ -1,0 +1,63 @@
+//! The loop, one command a step: identify, compare, suggest, extend, compare again, simulate.
+
+use crate::harness::Desk;
+
+#[test]
+fn the_loop_by_hand_finds_and_adds_the_hidden_effect() {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 2, "c");
+    let data = "c/recording.csv";
+
+    let identified =
+        desk.aep(&format!("identify {data} --effects coulomb,viscous,offset -o model.json"));
+    assert!(identified.done().contains("coulomb.F_C"));
+
+    let compared = desk
+        .aep(&format!("compare {data} --model model.json --json before.json --html before.html"));
+    assert!(compared.done().contains("of the error"));
+    assert!(desk.read("before.html").contains("How well the model fits"));
+
+    let suggested = desk.aep(&format!("suggest {data} --model model.json --json suggested.json"));
+    assert!(suggested.done().contains("--add stribeck"), "{}", suggested.out);
+    let ranking = &desk.json("suggested.json")["ranking"][0];
+    assert_eq!(ranking[0]["effect"], "stribeck");
+
+    let extended =
+        desk.aep(&format!("extend {data} --model model.json --add stribeck -o better.json"));
+    assert!(extended.done().contains("+ stribeck"));
+    desk.aep(&format!("compare {data} --model better.json --json after.json")).done();
+    let error =
+        |name: &str| desk.json(name)["error"]["force_relative"]["validation"].as_f64().unwrap();
+    assert!(error("after.json") < 0.4 * error("before.json"));
+
+    let simulated = desk.aep(&format!("simulate --model better.json --input {data} -o motion.csv"));
+    assert!(simulated.done().contains("rms away from the measured position"));
+    let header = "time_s,force_N,position_m,velocity_m_s,measured_position_m";
+    assert_eq!(desk.read("motion.csv").lines().next(), Some(header));
+}
+
+#[test]
+fn another_optimizer_finds_the_same_parameters() {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 2, "c");
+    let value = |algorithm: &str| {
+        let line = format!(
+            "identify c/recording.csv --effects coulomb,viscous,offset,stribeck --algorithm {algorithm} --json -"
+        );
+        let run = desk.aep(&line);
+        let json: serde_json::Value = serde_json::from_str(run.done()).unwrap();
+        json["parameters"]["stribeck.v_s"]["value"].as_f64().unwrap()
+    };
+    let (aep, meta_ep) = (value("aep"), value("meta-ep"));
+    assert!((aep / meta_ep - 1.0).abs() < 1e-3, "{aep} {meta_ep}");
+}
+
+#[test]
+fn an_effect_that_the_model_has_is_not_added_again() {
+    let desk = Desk::new();
+    desk.challenge("nothing", 1, "c");
+    desk.aep("identify c/recording.csv -q --effects coulomb,viscous -o model.json").done();
+    desk.aep("extend c/recording.csv --model model.json --add viscous -o better.json")
+        .refused(&["has 'viscous' already", "  model.json"]);
+    assert!(!desk.path("better.json").exists());
+}

@@ -1,0 +1,92 @@
+//! A discovery as one page.
+
+use std::fmt::Write;
+
+use missing_physics::Discovery;
+use missing_physics::data_check::DataCheck;
+
+use crate::html::{escape, section};
+use crate::plot;
+
+mod data;
+mod doubts;
+mod ladder;
+mod parameters;
+mod ranking;
+mod verdict;
+mod where_it_fails;
+
+/// Where the recording came from, for the head of the page.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Source {
+    /// Name of the file.
+    pub name: String,
+    /// How each quantity was read: quantity, column in the file, unit.
+    pub columns: Vec<[String; 3]>,
+    /// The command that makes this page again.
+    pub command: String,
+}
+
+const STYLE: &str = include_str!("report/style.css");
+
+/// The page of a discovery: one file, nothing loaded from elsewhere, no scripts.
+pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
+    let sections = [
+        verdict::head(discovery, source),
+        ladder::section(discovery),
+        where_it_fails::section(discovery),
+        curves(discovery),
+        ranking::section(discovery),
+        parameters::section(discovery),
+        doubts::section(discovery),
+        data::section(check, source),
+    ];
+    page(&format!("What the model lacks: {}", source.name), &sections, discovery, source)
+}
+
+/// The page of a model on data, without a verdict.
+pub fn comparison(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
+    let sections = [
+        verdict::plain_head(discovery, source),
+        where_it_fails::section(discovery),
+        curves(discovery),
+        ladder::section(discovery),
+        parameters::section(discovery),
+        data::section(check, source),
+    ];
+    page(&format!("How well the model fits: {}", source.name), &sections, discovery, source)
+}
+
+fn page(title: &str, sections: &[String], discovery: &Discovery, source: &Source) -> String {
+    format!(
+        "<!doctype html>\n<html lang=en>\n<head><meta charset=utf-8>\
+         <meta name=viewport content=\"width=device-width, initial-scale=1\">\
+         <meta name=color-scheme content=\"light dark\">\n\
+         <title>{}</title>\n<style>\n{STYLE}</style></head>\n<body><main>\n{}{}</main></body></html>\n",
+        escape(title),
+        sections.concat(),
+        foot(discovery, source),
+    )
+}
+
+fn curves(discovery: &Discovery) -> String {
+    let figures: String = discovery.plots.iter().filter_map(plot::figure).collect();
+    if figures.is_empty() {
+        return String::new();
+    }
+    section("curves", "Curves", "", &format!("<div class=figures>{figures}</div>"))
+}
+
+fn foot(discovery: &Discovery, source: &Source) -> String {
+    let mut foot = format!(
+        "<footer>Seed {}, {:.1} s, aep {}.",
+        discovery.seed,
+        discovery.wall_s,
+        env!("CARGO_PKG_VERSION")
+    );
+    if !source.command.is_empty() {
+        // Writing to a string cannot fail.
+        let _ = write!(foot, " Made by <code>{}</code>", escape(&source.command));
+    }
+    foot + "</footer>"
+}

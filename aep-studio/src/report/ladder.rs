@@ -1,0 +1,90 @@
+//! The ladder: errors as bars that fall to the noise floor.
+
+use missing_physics::Discovery;
+use missing_physics::report::{Rung, SplitError};
+
+use crate::html::{self, escape, table};
+use crate::words::{self, ErrorName};
+
+const LEAD: &str = "Each rung is one effect more. What counts is the error on held-out data, \
+    which took no part in the fit; the line marks the noise, below which no model gets.";
+
+/// The section of the ladder.
+pub(super) fn section(discovery: &Discovery) -> String {
+    let Some(name) = words::main_error(discovery) else {
+        return String::new();
+    };
+    let body = format!("{}{}", bars(discovery, &name), numbers(discovery));
+    html::section("ladder", "The ladder", LEAD, &body)
+}
+
+fn bars(discovery: &Discovery, name: &ErrorName) -> String {
+    let errors: Vec<(&Rung, SplitError)> = discovery
+        .ladder
+        .iter()
+        .filter_map(|rung| rung.error.get(&name.key).map(|error| (rung, *error)))
+        .collect();
+    let sizes = errors.iter().flat_map(|(_, error)| [error.fit, error.validation]);
+    let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return String::new();
+    }
+    let floor = words::floor(discovery, name).map(|floor| floor / largest);
+    let rows: String =
+        errors.iter().map(|(rung, error)| row(rung, *error, name, largest, floor)).collect();
+    let key = "<div class=legend><span><i class=c1></i>held-out data</span>\
+               <span><i class=c5></i>fitted data</span><span><i class=floor></i>noise</span></div>";
+    format!("{key}<div class=ladder>{rows}</div>")
+}
+
+fn row(
+    rung: &Rung,
+    error: SplitError,
+    name: &ErrorName,
+    largest: f64,
+    floor: Option<f64>,
+) -> String {
+    let width = |size: f64| 100.0 * (size / largest).clamp(0.0, 1.0);
+    let floor = floor
+        .filter(|floor| *floor <= 1.0)
+        .map(|floor| format!("<span class=floor style=\"left:{:.2}%\"></span>", 100.0 * floor))
+        .unwrap_or_default();
+    format!(
+        "<div class=rung><span class=name>{}</span><span class=track>\
+         <span class=held style=\"width:{:.2}%\"></span><span class=fit style=\"width:{:.2}%\"></span>{floor}</span>\
+         <span class=value>{}</span></div>",
+        escape(&words::rung(rung)),
+        width(error.validation),
+        width(error.fit),
+        escape(&name.value(error.validation)),
+    )
+}
+
+fn numbers(discovery: &Discovery) -> String {
+    let names = words::errors(discovery);
+    let mut headings = vec!["Rung".to_owned()];
+    for name in &names {
+        headings.push(format!("#{} (held out)", name.heading()));
+        headings.push("#fitted".to_owned());
+    }
+    headings.push("#p-value".to_owned());
+    let rows: Vec<Vec<String>> = discovery
+        .ladder
+        .iter()
+        .map(|rung| {
+            let mut cells = vec![escape(&words::rung(rung))];
+            for name in &names {
+                let error = rung.error.get(&name.key);
+                let text = |pick: fn(&SplitError) -> f64| {
+                    error.map_or("-".to_owned(), |error| escape(&name.value(pick(error))))
+                };
+                cells.push(text(|error| error.validation));
+                cells.push(text(|error| error.fit));
+            }
+            cells.push(rung.p_value.map_or_else(|| "-".to_owned(), |p| escape(&words::p_value(p))));
+            cells
+        })
+        .collect();
+    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
+    table(&headings, &rows)
+}

@@ -1,0 +1,158 @@
+//! How a discovery is put into words, the same on the page and in the terminal.
+
+use missing_physics::quantity::{number, percent, quantity};
+use missing_physics::report::{Discovery, Estimate, Rung, SplitError, Verdict};
+
+/// What an error of a rung is, told by its key in the JSON.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ErrorName {
+    /// The key, e.g. `force_rms_N`.
+    pub key: String,
+    /// What is compared, e.g. `force`.
+    pub quantity: String,
+    /// SI unit; empty for a fraction.
+    pub unit: String,
+}
+
+impl ErrorName {
+    /// Takes apart `force_relative` (a fraction) or `force_rms_N` (in its unit).
+    pub fn parse(key: &str) -> Self {
+        let (name, unit) = match key.split_once("_rms_") {
+            Some((name, unit)) => (name, unit.replace('_', "/")),
+            None => (key.strip_suffix("_relative").unwrap_or(key), String::new()),
+        };
+        Self { key: key.to_owned(), quantity: name.replace('_', " "), unit }
+    }
+
+    /// Whether it is a fraction of the quantity's own size.
+    pub fn is_relative(&self) -> bool {
+        self.key.ends_with("_relative")
+    }
+
+    /// Heading of a column: `force error`, `window error`.
+    pub fn heading(&self) -> String {
+        if self.is_relative() {
+            format!("{} error, relative", self.quantity)
+        } else {
+            format!("{} error", self.quantity)
+        }
+    }
+
+    /// A value of it with its unit.
+    pub fn value(&self, value: f64) -> String {
+        if self.is_relative() { percent(value) } else { quantity(value, &self.unit) }
+    }
+}
+
+/// The errors of the ladder: those relative first, then absolute ones of the same quantity, then
+/// the other views.
+pub fn errors(discovery: &Discovery) -> Vec<ErrorName> {
+    let first = discovery.ladder.first();
+    let keys = first.into_iter().flat_map(|rung| rung.error.keys());
+    let mut names: Vec<ErrorName> = keys.map(|key| ErrorName::parse(key)).collect();
+    let main = names.iter().find(|name| name.is_relative()).map(|name| name.quantity.clone());
+    names.sort_by_key(|name| (!name.is_relative(), Some(&name.quantity) != main.as_ref()));
+    names
+}
+
+/// The error that the ladder is judged by: the first of [`errors`].
+pub fn main_error(discovery: &Discovery) -> Option<ErrorName> {
+    errors(discovery).into_iter().next()
+}
+
+/// The noise floor in the measure of `name`, where it is known.
+pub fn floor(discovery: &Discovery, name: &ErrorName) -> Option<f64> {
+    let entries = discovery.noise_floor.iter();
+    let (key, floor) =
+        entries.clone().find(|(key, _)| key.starts_with(&format!("{}_", name.quantity)))?;
+    if !name.is_relative() {
+        return (key.ends_with(&name.unit)).then_some(*floor);
+    }
+    // A fraction of the quantity's size, which is the absolute error over the relative one.
+    let base = discovery.ladder.first()?;
+    let relative = base.error.get(&name.key)?.validation;
+    let absolute = base
+        .error
+        .iter()
+        .map(|(key, error)| (ErrorName::parse(key), error))
+        .find(|(other, _)| other.quantity == name.quantity && !other.is_relative())?
+        .1
+        .validation;
+    (absolute > 0.0).then(|| floor * relative / absolute)
+}
+
+/// The verdict in two or three words.
+pub fn verdict(discovery: &Discovery) -> &'static str {
+    match discovery.verdict {
+        Verdict::EffectsFound if discovery.added.len() > 1 => "Missing effects found",
+        Verdict::EffectsFound => "Missing effect found",
+        Verdict::NothingMissing => "Nothing is missing",
+        Verdict::Unexplained => "Unexplained structure",
+        Verdict::Ambiguous => "Found, but ambiguous",
+    }
+}
+
+/// What a rung is called: `base model` or `+ stribeck`.
+pub fn rung(rung: &Rung) -> String {
+    rung.added.as_ref().map_or_else(|| "base model".to_owned(), |effect| format!("+ {effect}"))
+}
+
+/// Value of an estimate, digits as its interval supports.
+pub fn value(estimate: &Estimate) -> String {
+    format!("{} {}", number(estimate.value), estimate.unit).trim_end().to_owned()
+}
+
+/// Interval of an estimate: `200 .. 207`, or why there is none.
+pub fn interval(estimate: &Estimate) -> String {
+    if !estimate.identifiable {
+        return "not determined by this data".to_owned();
+    }
+    format!("{} .. {}", number(estimate.low), number(estimate.high))
+}
+
+/// A p-value as it can be claimed: `0.012`, `< 0.001`, or nothing where there is none.
+pub fn p_value(value: f64) -> String {
+    match value {
+        _ if !value.is_finite() => "-".to_owned(),
+        _ if value < 0.001 => "< 0.001".to_owned(),
+        _ if value < 0.095 => format!("{value:.3}"),
+        _ => format!("{value:.2}"),
+    }
+}
+
+/// The part of the way from the base model's error to the noise floor that the last rung has gone,
+/// 0..1.
+pub fn explained(discovery: &Discovery) -> Option<f64> {
+    let name = main_error(discovery)?;
+    let floor = floor(discovery, &name)?;
+    let at = |rung: &Rung| rung.error.get(&name.key).map(|error: &SplitError| error.validation);
+    let (first, last) = (at(discovery.ladder.first()?)?, at(discovery.ladder.last()?)?);
+    (first > floor).then(|| ((first - last) / (first - floor)).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_of_errors_become_words_with_units() {
+        let relative = ErrorName::parse("force_relative");
+        assert_eq!(
+            (relative.heading().as_str(), relative.value(0.0408)),
+            ("force error, relative", "4.08 %".into())
+        );
+        let window = ErrorName::parse("window_rms_m");
+        assert_eq!(
+            (window.heading().as_str(), window.value(2e-6)),
+            ("window error", "2.00 µm".into())
+        );
+    }
+
+    #[test]
+    fn p_values_claim_no_more_than_they_can() {
+        assert_eq!(p_value(0.0), "< 0.001");
+        assert_eq!(p_value(0.0123), "0.012");
+        assert_eq!(p_value(0.5), "0.50");
+        assert_eq!(p_value(f64::NAN), "-");
+    }
+}

@@ -1,0 +1,102 @@
+//! The page of a discovery as the engine writes it.
+
+use std::f64::consts::PI;
+
+use aep_studio::{Source, report};
+use missing_physics::data_check::{DataCheck, check};
+use missing_physics::{Channel, Discovery, Recording};
+
+fn discovery() -> Discovery {
+    serde_json::from_str(include_str!("fixtures/discovery.json")).unwrap()
+}
+
+fn data() -> DataCheck {
+    let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 1e-3).collect();
+    let force = time.iter().map(|t| (30.0 * (PI * t).sin()).min(25.0)).collect();
+    let position = time.iter().map(|t| (1e5 * (PI * t).cos()).round() * 1e-6).collect();
+    let channels = vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+    check(&Recording::new("run.csv", time, channels).unwrap())
+}
+
+fn source(name: &str) -> Source {
+    let columns = vec![["force".into(), "vir*gtau".into(), "N".into()]];
+    Source { name: name.to_owned(), columns, command: "aep discover run.csv --seed 1".to_owned() }
+}
+
+fn page(discovery: &Discovery) -> String {
+    let page = report::html(discovery, &source("run.csv"), &data());
+    // For a look at it: AEP_KEEP_PAGE=page.html cargo test -p aep-studio
+    if let Ok(path) = std::env::var("AEP_KEEP_PAGE") {
+        std::fs::write(path, &page).unwrap();
+    }
+    page
+}
+
+#[test]
+fn everything_found_stands_on_the_page() {
+    let page = page(&discovery());
+    for part in [
+        "Found, but ambiguous",
+        "asymmetry",
+        "4.08 %",
+        "2.07 %",
+        "constant speed",
+        "a line at 2.5 mm",
+        "not determined by this data",
+        "frictional-memory",
+        "Speed up and slow down",
+        "vir*gtau",
+        "held at 25.0 N",
+        "Seed 1",
+    ] {
+        assert!(page.contains(part), "'{part}' is not on the page");
+    }
+}
+
+#[test]
+fn the_page_loads_nothing_and_runs_nothing() {
+    let page = page(&discovery());
+    for part in ["<script", "http://", "https://", "src=", "@import", "url("] {
+        assert!(!page.contains(part), "'{part}' is on the page");
+    }
+}
+
+#[test]
+fn names_from_files_cannot_become_markup() {
+    let mut discovery = discovery();
+    let evil = "<img src=x onerror=alert(1)>\"'";
+    discovery.summary = evil.to_owned();
+    discovery.notes = vec![evil.to_owned()];
+    discovery.ladder[0].effects = vec![evil.to_owned()];
+    discovery.ladder[1].added = Some(evil.to_owned());
+    discovery.ranking[0][0].effect = evil.to_owned();
+    discovery.where_base[0].note = evil.to_owned();
+    discovery.plots[0].title = evil.to_owned();
+    let page = report::html(&discovery, &source(evil), &data());
+    assert!(!page.contains("<img"));
+}
+
+#[test]
+fn every_tag_that_opens_is_closed() {
+    let page = page(&discovery());
+    for tag in ["section", "div", "table", "tr", "td", "th", "figure", "svg", "details", "ul", "li"]
+    {
+        let count = |text: &str| page.matches(text).count();
+        let opened = count(&format!("<{tag}>")) + count(&format!("<{tag} "));
+        assert_eq!(opened, count(&format!("</{tag}>")), "{tag}");
+    }
+}
+
+#[test]
+fn a_discovery_with_hardly_anything_in_it_still_makes_a_page() {
+    let mut discovery = discovery();
+    discovery.added.clear();
+    discovery.ladder.truncate(1);
+    discovery.ladder[0].error.clear();
+    discovery.ladder[0].parameters.clear();
+    discovery.ranking.clear();
+    discovery.plots.clear();
+    discovery.noise_floor.clear();
+    let page = report::html(&discovery, &source("run.csv"), &data());
+    assert!(page.contains("</html>") && !page.contains("NaN"));
+}

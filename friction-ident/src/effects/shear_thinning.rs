@@ -1,0 +1,62 @@
+//! Viscous friction that saturates: the lubricant thins under shear.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::axis::Quantity;
+
+/// `dF tanh(v / v_n)`: viscous with `dF / v_n` at low speed, limited by the shear stress that the
+/// lubricant can bear at high speed.
+#[derive(Clone, Copy, Debug)]
+pub struct ShearThinning;
+
+static ABOUT: About = About {
+    name: "shear-thinning",
+    title: "viscous friction that saturates (shear thinning)",
+    equation: "dF tanh(v/v_n)",
+    parameters: &[
+        Parameter::level("dF", "limit at high speed", Quantity::Force, 200.0, 4.0),
+        Parameter::shape(
+            "v_n",
+            "speed at which the lubricant thins",
+            Quantity::Velocity,
+            (1e-4, 0.3),
+            1e-2,
+        ),
+    ],
+    slots: &[Slot::SmoothForce],
+    shows: "(residual x sign of velocity) against speed: too little friction at low speed, the same for \
+            speeding up and slowing down; the reverse of the Stribeck hump",
+    reference: "B. Gecim, W. O. Winer, J. Lubrication Technology 102, 1980 (limiting shear stress)",
+};
+
+impl Effect for ShearThinning {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        let lanes = out.force.len();
+        let (limit, speed) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
+        let velocity = &m.velocity[..lanes];
+        let (force, slope) = (&mut out.force[..lanes], &mut out.damping[..lanes]);
+        for i in 0..lanes {
+            let part = (velocity[i] / speed[i]).tanh();
+            force[i] += limit[i] * part;
+            slope[i] += limit[i] * (1.0 - part * part) / speed[i];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, smooth};
+    use super::*;
+
+    #[test]
+    fn it_is_viscous_at_low_speed_and_constant_at_high_speed() {
+        let p = [4.0, 0.01];
+        let (force, damping) = smooth(&ShearThinning, &p, Point::at(0.0, 1e-6));
+        assert!((force - 4e-4).abs() < 1e-9 && (damping - 400.0).abs() < 1e-4);
+        let (force, damping) = smooth(&ShearThinning, &p, Point::at(0.0, -0.5));
+        assert!((force + 4.0).abs() < 1e-9 && damping.abs() < 1e-9);
+    }
+}

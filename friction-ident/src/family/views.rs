@@ -1,0 +1,54 @@
+//! The model's error in restarted windows, next to that of the force.
+
+use std::collections::BTreeMap;
+
+use missing_physics::Recording;
+use missing_physics::report::SplitError;
+use missing_physics::split::Split;
+
+use crate::axis::Axis;
+use crate::model::Model;
+use crate::windows::{Window, WindowErrors, WindowOptions, window_errors};
+
+/// Length of a window, s; velocity weakening makes longer ones unstable even for the true model.
+const LENGTH: f64 = 0.1;
+/// Fewest samples of a window.
+const SAMPLES: f64 = 10.0;
+
+/// Position error over windows of 0.1 s with fitted starts, on fitted and on held-out blocks;
+/// `grid` holds the times of the comparison grid that `split` divides. Nothing where the recording
+/// has no such windows.
+pub fn views(
+    model: &Model,
+    recording: &Recording,
+    grid: &[f64],
+    split: &Split,
+) -> BTreeMap<String, SplitError> {
+    let length = LENGTH.max(SAMPLES * recording.interval());
+    let Ok(errors) = window_errors(model, recording, &WindowOptions::new(length)) else {
+        return BTreeMap::new();
+    };
+    let (mut fit, mut validation) = (Vec::new(), Vec::new());
+    for window in errors.windows {
+        let middle = recording.time()[usize::midpoint(window.samples.start, window.samples.end)];
+        match held_out(middle, grid, split) {
+            Some(true) => validation.push(window),
+            Some(false) => fit.push(window),
+            None => {}
+        }
+    }
+    let rms = |windows: Vec<Window>| WindowErrors { length, windows }.robust_rms();
+    let error = SplitError { fit: rms(fit), validation: rms(validation) };
+    let name = if model.axis() == Axis::Rotary { "window_rms_rad" } else { "window_rms_m" };
+    BTreeMap::from([(name.to_owned(), error)])
+}
+
+/// Whether the block around an instant is held out; nothing between blocks.
+fn held_out(time: f64, grid: &[f64], split: &Split) -> Option<bool> {
+    split
+        .blocks()
+        .find(|(range, _)| {
+            !range.is_empty() && (grid[range.start]..=grid[range.end - 1]).contains(&time)
+        })
+        .map(|(_, out)| out)
+}
