@@ -4,6 +4,8 @@
 use crate::app::Global;
 use crate::failure::Failure;
 
+mod reproduce_optimizers;
+
 /// Makes the commands of `name(module)` pairs: `module::Args` and `module::run`.
 macro_rules! commands {
     ($($name:ident($module:ident)),+ $(,)?) => {
@@ -38,6 +40,9 @@ commands! {
     Simulate(simulate),
     Challenge(challenge),
     Effects(effects),
+    Optimize(optimize),
+    Problems(problems),
+    Reproduce(reproduce),
 }
 
 /// A number above 0.

@@ -3,6 +3,7 @@
 mod app;
 mod args;
 mod commands;
+mod curve_plot;
 mod example;
 mod failure;
 mod output;

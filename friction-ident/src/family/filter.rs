@@ -1,9 +1,12 @@
-//! Zero-phase low-pass filter: a Butterworth filter of order 4, run forwards and backwards.
+//! Low-pass filters without phase shift: a Butterworth filter of order 4, run forwards and backwards,
+//! for whole signals, and a symmetric kernel for single points of one.
 //!
 //! A causal filter delays position against force and biases viscous friction by -18 % and Coulomb
 //! friction by +14 % on real data; run in both directions it delays nothing.
 
 use std::f64::consts::PI;
+
+use missing_physics::basis::dot;
 
 /// Second-order sections of the filter.
 const SECTIONS: usize = 2;
@@ -81,9 +84,59 @@ fn steady([b0, _, b2, _, a2]: [f64; 5], value: f64) -> [f64; 2] {
     [(1.0 - b0) * value, (b2 - a2) * value]
 }
 
+/// A symmetric low-pass kernel: a sinc under a Hann window, two periods of the cut-off to either side.
+/// Where only every tenth value of the filtered signal is needed it is several times cheaper than the
+/// recursive filter.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    weights: Vec<f64>,
+}
+
+impl Kernel {
+    /// A kernel with this cut-off (amplitude 1/2) as a share of the sampling frequency.
+    pub fn new(cutoff: f64) -> Self {
+        let reach = Self::reach_of(cutoff) as i32;
+        let raw: Vec<f64> = (-reach..=reach)
+            .map(|k| {
+                let x = f64::from(k) * cutoff * 2.0 * PI;
+                let sinc = if k == 0 { 1.0 } else { x.sin() / x };
+                let part = f64::from(k) / f64::from(reach + 1);
+                sinc * (0.5 + 0.5 * (PI * part).cos())
+            })
+            .collect();
+        let sum: f64 = raw.iter().sum();
+        Self { weights: raw.iter().map(|weight| weight / sum).collect() }
+    }
+
+    /// Samples that it needs to either side.
+    pub fn reach_of(cutoff: f64) -> usize {
+        (2.0 / cutoff).ceil() as usize
+    }
+
+    /// The filtered signal at `index`, which must be `reach` away from both ends.
+    pub fn at(&self, signal: &[f64], index: usize) -> f64 {
+        let reach = self.weights.len() / 2;
+        dot(&self.weights, &signal[index - reach..=index + reach])
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_kernel_passes_low_frequencies_halves_the_cut_off_and_stops_high_ones() {
+        let kernel = Kernel::new(0.05);
+        let gain = |frequency: f64| {
+            let wave: Vec<f64> =
+                (0..201).map(|k| (2.0 * PI * frequency * f64::from(k - 100)).cos()).collect();
+            kernel.at(&wave, 100)
+        };
+        assert!((gain(0.0) - 1.0).abs() < 1e-12);
+        assert!((gain(0.02) - 1.0).abs() < 0.01);
+        assert!((gain(0.05) - 0.5).abs() < 0.01);
+        assert!(gain(0.1).abs() < 0.01 && gain(0.3).abs() < 0.01);
+    }
 
     #[test]
     fn it_agrees_with_scipy() {

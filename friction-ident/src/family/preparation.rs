@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use missing_physics::{Hold, Recording, RecordingError};
 
-use super::filter::LowPass;
+use super::filter::{Kernel, LowPass};
 
 /// Cut-off of the position's smoother as a share of the sampling frequency.
 const SMOOTHER: f64 = 0.1;
@@ -86,7 +86,7 @@ pub struct Prepared {
     pub rest_speed: f64,
     /// Velocity and acceleration by the heavier smoother.
     pub heavier: (Vec<f64>, Vec<f64>),
-    low_pass: LowPass,
+    kernel: Kernel,
 }
 
 impl Prepared {
@@ -135,7 +135,6 @@ impl Prepared {
         let rest_speed = (REST * velocity_noise).max(RINGING * rms(&light.velocity));
         let moving: Vec<f64> =
             light.velocity.iter().map(|v| f64::from(u8::from(v.abs() > rest_speed))).collect();
-        let low_pass = LowPass::new(relative);
         let mut prepared = Self {
             interval,
             time: raw.time,
@@ -150,7 +149,7 @@ impl Prepared {
             position_noise,
             rest_speed,
             heavier: (heavy.velocity, heavy.acceleration),
-            low_pass,
+            kernel: Kernel::new(relative),
         };
         prepared.grid = prepared.choose_grid(relative);
         if prepared.grid.len() < LEAST_POINTS {
@@ -162,29 +161,24 @@ impl Prepared {
 
     fn choose_grid(&self, relative: f64) -> Vec<usize> {
         let stride = ((1.0 / (GRID * relative)) as usize).max(self.time.len() / MOST_POINTS).max(1);
-        // Two periods of the bandwidth at either end of a piece belong to the filter.
-        let edge = (2.0 / relative).ceil() as usize;
-        let smooth: Vec<f64> = self.filtered(&self.moving);
+        // The kernel must not reach beyond a piece.
+        let edge = Kernel::reach_of(relative);
         let inner = |range: &Range<usize>| {
             (range.start + edge..range.end.saturating_sub(edge)).step_by(stride)
         };
-        self.segments.iter().flat_map(inner).filter(|&k| smooth[k] > MOVING).collect()
+        let moves = |k: &usize| self.kernel.at(&self.moving, *k) > MOVING;
+        self.segments.iter().flat_map(inner).filter(moves).collect()
     }
 
     /// A signal on the comparison grid: zero where the axis rests, low-passed, thinned out.
     pub fn compare(&self, signal: &[f64]) -> Vec<f64> {
         let masked: Vec<f64> = signal.iter().zip(&self.moving).map(|(s, m)| s * m).collect();
-        let filtered = self.filtered(&masked);
-        self.grid.iter().map(|&k| filtered[k]).collect()
+        self.grid.iter().map(|&k| self.kernel.at(&masked, k)).collect()
     }
 
     /// A signal on the comparison grid as it is.
     pub fn sample(&self, signal: &[f64]) -> Vec<f64> {
         self.grid.iter().map(|&k| signal[k]).collect()
-    }
-
-    fn filtered(&self, signal: &[f64]) -> Vec<f64> {
-        self.segments.iter().flat_map(|range| self.low_pass.run(&signal[range.clone()])).collect()
     }
 }
 

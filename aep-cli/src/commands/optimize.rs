@@ -1,0 +1,276 @@
+//! `aep optimize`: optimizers compared on a test function.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use aep_core::trials::{Plan, RankTest, Summary, Trials, rank_test};
+use aep_core::{Budget, Method, methods};
+use aep_problems::TestProblem;
+use serde::Serialize;
+
+use super::problems::known;
+use super::reproduce::keep;
+use crate::app::Global;
+use crate::curve_plot::{self, Axes, Curve};
+use crate::failure::Failure;
+use crate::output::{self, Align, Table, dim, heading};
+use crate::progress::Progress;
+
+/// Compare optimizers on a test function: same initial populations, statistics over trials
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  aep optimize rosenbrock --algorithm aep-practical,de,cma-es --trials 50
+  aep optimize f5 --algorithm aep,meta-ep --generations 1500 -o f5
+  aep optimize rastrigin --dimension 5 --shift --evaluations 50000")]
+pub struct Args {
+    /// Test function ('aep problems' lists them)
+    #[arg(value_name = "PROBLEM")]
+    problem: String,
+    /// Optimizers; the first one is compared with each of the others
+    #[arg(
+        long,
+        value_name = "NAMES",
+        value_delimiter = ',',
+        default_value = "aep,aep-practical,meta-ep,de,cma-es"
+    )]
+    algorithm: Vec<String>,
+    /// Trials of each
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..))]
+    trials: u32,
+    /// Components, where the function has any number of them
+    #[arg(long, value_name = "N")]
+    dimension: Option<usize>,
+    /// Evaluations of each trial
+    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    evaluations: u64,
+    /// Generations of each trial in place of evaluations
+    #[arg(long, value_name = "N", conflicts_with = "evaluations")]
+    generations: Option<u64>,
+    /// Cost that counts as solved; by default the function's own
+    #[arg(long, value_name = "COST", allow_negative_numbers = true)]
+    target: Option<f64>,
+    /// Individuals; by default the method's own number
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    population: usize,
+    /// Move the optimum to a random place, another one in each trial
+    #[arg(long)]
+    shift: bool,
+    /// Add a number from N(0, 1) to every cost
+    #[arg(long)]
+    noise: bool,
+    /// Seed of every random choice; the same seed gives the same result
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Write curves, trials and plot into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Write the summary as JSON; `-` for the terminal
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// The results, as written to JSON.
+#[derive(Serialize)]
+struct Comparison {
+    problem: &'static str,
+    dimension: usize,
+    target: f64,
+    plan: Plan,
+    version: &'static str,
+    summaries: Vec<Summary>,
+    /// The first method against each of the others.
+    first_against: Vec<Option<RankTest>>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let problem = problem(args)?;
+    let chosen = args.algorithm.iter().map(|name| method(name, args.population));
+    let chosen = chosen.collect::<Result<Vec<Box<dyn Method>>, Failure>>()?;
+    let target = args.target.unwrap_or_else(|| problem.target());
+    let plan = Plan::new(args.trials as usize, budget(args, target)).with_seed(args.seed);
+    let progress = Progress::new(global.quiet);
+    let mut results = Vec::new();
+    for method in &chosen {
+        progress.say(format!("{}: {} trials", method.name(), args.trials));
+        results.push(trials(args, &plan, &**method, &problem)?);
+    }
+    drop(progress);
+    let comparison = compare(&problem, target, plan, &results);
+    if let Some(path) = &args.json {
+        output::save_json(path, &comparison)?;
+    }
+    let files = args.output.as_deref().map_or(Ok(Vec::new()), |directory| {
+        write(directory, &problem, &comparison, &results)
+    })?;
+    if global.quiet { Ok(()) } else { output::print(&report(&comparison, &files)) }
+}
+
+fn problem(args: &Args) -> Result<TestProblem, Failure> {
+    let definition = known(&args.problem)?;
+    let dimension = args.dimension.unwrap_or_else(|| definition.dimension.usual());
+    let problem = definition
+        .in_dimension(dimension)
+        .map_err(|error| Failure::bad_input(error.to_string()).with_hint("change --dimension"))?;
+    Ok(if args.noise { problem.with_noise(args.seed) } else { problem })
+}
+
+fn method(name: &str, population: usize) -> Result<Box<dyn Method>, Failure> {
+    let named = methods::find(name).ok_or_else(|| {
+        let names: Vec<&str> = methods::ALL.iter().map(|method| method.name).collect();
+        let hint = format!("there are: {}", names.join(", "));
+        Failure::bad_input(format!("no optimizer '{name}'")).with_hint(hint)
+    })?;
+    Ok((named.build)(population))
+}
+
+/// A noisy cost says nothing about being there, so noise leaves the target out of the budget.
+fn budget(args: &Args, target: f64) -> Budget {
+    let budget = match args.generations {
+        Some(generations) => Budget::generations(generations),
+        None => Budget::evaluations(args.evaluations),
+    };
+    if args.noise { budget } else { budget.with_target(target) }
+}
+
+fn trials(
+    args: &Args,
+    plan: &Plan,
+    method: &dyn Method,
+    problem: &TestProblem,
+) -> Result<Trials, Failure> {
+    let of_trial = |trial: usize| {
+        let problem = problem.clone();
+        if args.shift { problem.with_random_shift(plan.trial_seed(trial)) } else { problem }
+    };
+    plan.run(method, of_trial).map_err(|error| {
+        Failure::bad_input(error.to_string()).with_hint("change --population or --algorithm")
+    })
+}
+
+fn compare(problem: &TestProblem, target: f64, plan: Plan, results: &[Trials]) -> Comparison {
+    let merits: Vec<_> = results.iter().map(|trials| trials.merits(target)).collect();
+    let against = |i: usize| (i > 0).then(|| rank_test(&merits[0], &merits[i]));
+    Comparison {
+        problem: problem.definition().name,
+        dimension: problem.optimum().len(),
+        target,
+        plan,
+        version: env!("CARGO_PKG_VERSION"),
+        summaries: results.iter().map(|trials| trials.summary(target)).collect(),
+        first_against: (0..results.len()).map(against).collect(),
+    }
+}
+
+fn report(comparison: &Comparison, files: &[PathBuf]) -> String {
+    let (name, target) = (comparison.problem, comparison.target);
+    let title = format!("{name} in {} components, solved at {target:.3e}", comparison.dimension);
+    let mut table = Table::new(&[
+        ("optimizer", Align::Left),
+        ("solved", Align::Right),
+        ("evaluations", Align::Right),
+        ("expected with restarts", Align::Right),
+        ("median cost", Align::Right),
+        ("quartiles", Align::Right),
+        ("mean cost", Align::Right),
+        ("first is better", Align::Right),
+        ("p", Align::Right),
+    ]);
+    let count = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.0}"));
+    for (summary, test) in comparison.summaries.iter().zip(&comparison.first_against) {
+        let (low, high) = summary.quartiles;
+        table.row([
+            summary.method.clone(),
+            format!("{}/{}", summary.successes, summary.trials),
+            count(summary.evaluations_to_target),
+            count(summary.expected_running_time),
+            format!("{:.2e}", summary.median),
+            format!("{low:.1e} .. {high:.1e}"),
+            format!("{:.2e}", summary.mean),
+            test.map_or(String::new(), |test| format!("{:.2}", test.effect)),
+            test.map_or(String::new(), |test| format!("{:.0e}", test.p_value)),
+        ]);
+    }
+    let note = dim(
+        "'first is better': probability that a trial of the first optimizer beats one of this row; \
+         p: rank test of no difference",
+    );
+    let mut text = format!("{}{}\n {note}\n", heading(&title), table.text());
+    for file in files {
+        let _ = writeln!(text, " {} {}", dim("written"), file.display());
+    }
+    text
+}
+
+fn write(
+    directory: &Path,
+    problem: &TestProblem,
+    comparison: &Comparison,
+    results: &[Trials],
+) -> Result<Vec<PathBuf>, Failure> {
+    std::fs::create_dir_all(directory).map_err(|error| {
+        Failure::bad_input(format!("cannot make the folder: {error}")).in_file(directory)
+    })?;
+    let mut files = Vec::new();
+    keep(&mut files, &directory.join("curves.csv"), &curves_csv(results))?;
+    keep(&mut files, &directory.join("curves.svg"), &svg(problem, results)?)?;
+    keep(&mut files, &directory.join("trials.csv"), &trials_csv(comparison.target, results))?;
+    let summary = directory.join("summary.json");
+    output::save_json(&summary, comparison)?;
+    files.push(summary);
+    Ok(files)
+}
+
+/// Evaluations at which curves are written.
+fn grid(results: &[Trials]) -> Vec<u64> {
+    const POINTS: u64 = 500;
+    let last = results.iter().map(Trials::longest).max().unwrap_or(0);
+    let step = last.div_ceil(POINTS).max(1);
+    (1..=last.div_ceil(step)).map(|i| (i * step).min(last)).collect()
+}
+
+fn curves_csv(results: &[Trials]) -> String {
+    let mut text = String::from("optimizer,evaluations,mean,median,first_quartile,third_quartile\n");
+    for trials in results {
+        for evaluations in grid(results) {
+            let point = trials.after(evaluations);
+            let (mean, median, low, high) = (point.mean, point.median, point.low, point.high);
+            let method = &trials.method;
+            let _ = writeln!(text, "{method},{evaluations},{mean:e},{median:e},{low:e},{high:e}");
+        }
+    }
+    text
+}
+
+fn trials_csv(target: f64, results: &[Trials]) -> String {
+    let columns = "optimizer,trial,seed,cost,evaluations,evaluations_to_target,failures,stop\n";
+    let mut text = String::from(columns);
+    for trials in results {
+        for (i, trial) in trials.trials.iter().enumerate() {
+            let reached = trial.evaluations_to(target).map_or(String::new(), |used| used.to_string());
+            let (method, seed, cost) = (&trials.method, trial.seed, trial.cost);
+            let (used, failures) = (trial.evaluations, trial.failures.total());
+            let stop = &trial.stop;
+            let _ = writeln!(text, "{method},{i},{seed},{cost:e},{used},{reached},{failures},{stop}");
+        }
+    }
+    text
+}
+
+fn svg(problem: &TestProblem, results: &[Trials]) -> Result<String, Failure> {
+    let above = |cost: f64| cost - problem.optimal_cost();
+    let grid = grid(results);
+    let curve = |trials: &Trials| {
+        let points: Vec<_> = grid.iter().map(|evaluations| trials.after(*evaluations)).collect();
+        let at = |e: u64| e as f64;
+        Curve {
+            label: trials.method.clone(),
+            points: points.iter().map(|p| (at(p.evaluations), above(p.median))).collect(),
+            band: points.iter().map(|p| (at(p.evaluations), above(p.low), above(p.high))).collect(),
+        }
+    };
+    let title = format!("{}, median and quartiles", problem.definition().name);
+    let (x, y) = ("evaluations", "cost above the smallest");
+    let axes = Axes { title: &title, x, y, logarithmic: true };
+    curve_plot::svg(axes, &results.iter().map(curve).collect::<Vec<Curve>>())
+}

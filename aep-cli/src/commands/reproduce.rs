@@ -1,0 +1,156 @@
+//! `aep reproduce`: the paper's figures, as curves and as a table of what is printed and what comes
+//! out here.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use aep_problems::paper::Claim;
+
+use super::reproduce_optimizers;
+use crate::app::Global;
+use crate::failure::Failure;
+use crate::output::{self, Align, Table, dim, heading};
+use crate::progress::Progress;
+
+/// Reproduce figures of the AEP paper: CSV, SVG, and a table of what agrees
+#[derive(clap::Args)]
+#[command(after_help = "Examples:
+  aep reproduce fig2 fig3 fig4 fig5 fig6 -o paper
+  aep reproduce all -o paper --no-readings      only the default reading of the paper's rules")]
+pub struct Args {
+    /// Figures, or all
+    #[arg(value_name = "FIGURE", default_value = "all")]
+    figures: Vec<String>,
+    /// Folder for the files
+    #[arg(short, long, value_name = "DIR", default_value = "paper")]
+    output: PathBuf,
+    /// Trials of each line
+    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u32).range(1..))]
+    trials: u32,
+    /// Seed of every random choice; the same seed gives the same result
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Leave out the other readings of what the paper does not say
+    #[arg(long)]
+    no_readings: bool,
+}
+
+/// A figure: what it is called and how it is made.
+pub struct Figure {
+    /// `fig2`, `fig3`, ...
+    pub name: &'static str,
+    /// What it shows.
+    pub title: &'static str,
+    /// Makes its files and holds the paper's statements against what comes out.
+    pub make: fn(&'static str, &Conditions) -> Result<Made, Failure>,
+}
+
+/// What every figure is made under.
+pub struct Conditions {
+    /// Folder for the files; exists.
+    pub directory: PathBuf,
+    /// Trials of each line.
+    pub trials: usize,
+    /// Seed of every random choice.
+    pub seed: u64,
+    /// Whether the other readings are measured, too.
+    pub readings: bool,
+}
+
+/// A figure that has been made.
+pub struct Made {
+    /// The paper's statements beside ours.
+    pub claims: Vec<Claim>,
+    /// The files written.
+    pub files: Vec<PathBuf>,
+}
+
+/// All figures; a new one is one entry in one of these lists.
+const FIGURES: &[&[Figure]] = &[reproduce_optimizers::FIGURES];
+
+/// Runs the command.
+pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let chosen = chosen(&args.figures)?;
+    std::fs::create_dir_all(&args.output).map_err(|error| {
+        Failure::bad_input(format!("cannot make the folder: {error}")).in_file(&args.output)
+    })?;
+    let conditions = Conditions {
+        directory: args.output.clone(),
+        trials: args.trials as usize,
+        seed: args.seed,
+        readings: !args.no_readings,
+    };
+    let progress = Progress::new(global.quiet);
+    let mut rows = Vec::new();
+    let mut files = Vec::new();
+    for figure in chosen {
+        progress.say(format!("{}: {}", figure.name, figure.title));
+        let made = (figure.make)(figure.name, &conditions)?;
+        rows.extend(made.claims.into_iter().map(|claim| (figure.name, claim)));
+        files.extend(made.files);
+    }
+    drop(progress);
+    let table = args.output.join("claims.csv");
+    output::save(&table, &claims_csv(&rows))?;
+    files.push(table);
+    if global.quiet { Ok(()) } else { output::print(&report(&rows, &files)) }
+}
+
+fn chosen(names: &[String]) -> Result<Vec<&'static Figure>, Failure> {
+    let all = || FIGURES.iter().copied().flatten();
+    let unknown = names.iter().find(|name| *name != "all" && !all().any(|f| f.name == **name));
+    if let Some(name) = unknown {
+        let known: Vec<&str> = all().map(|figure| figure.name).collect();
+        let hint = format!("there are: {}, all", known.join(", "));
+        return Err(Failure::bad_input(format!("no figure '{name}'")).with_hint(hint));
+    }
+    let wanted = |figure: &&Figure| names.iter().any(|name| name == "all" || name == figure.name);
+    Ok(all().filter(wanted).collect())
+}
+
+fn report(rows: &[(&str, Claim)], files: &[PathBuf]) -> String {
+    let mut table = Table::new(&[
+        ("figure", Align::Left),
+        ("about", Align::Left),
+        ("the paper prints", Align::Left),
+        ("here", Align::Left),
+        ("agrees", Align::Left),
+    ]);
+    for (figure, claim) in rows {
+        let verdict = if claim.agrees { "yes" } else { "no" };
+        let cells = [figure, claim.about.as_str(), &claim.paper, &claim.ours, verdict];
+        table.row(cells.map(str::to_owned));
+    }
+    let agreeing = rows.iter().filter(|(_, claim)| claim.agrees).count();
+    let mut text = heading("The paper's statements and ours") + &table.text();
+    let _ = writeln!(text, "\n {agreeing} of {} agree", rows.len());
+    for file in files {
+        let _ = writeln!(text, " {} {}", dim("written"), file.display());
+    }
+    text
+}
+
+fn claims_csv(rows: &[(&str, Claim)]) -> String {
+    let mut text = String::from("figure,about,paper,ours,agrees\n");
+    for (figure, claim) in rows {
+        let (about, paper, ours) = (quote(&claim.about), quote(&claim.paper), quote(&claim.ours));
+        let _ = writeln!(text, "{figure},{about},{paper},{ours},{}", claim.agrees);
+    }
+    text
+}
+
+/// A field of a CSV file.
+pub fn quote(field: &str) -> String {
+    if field.contains([',', '"', '\n']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
+
+/// Writes a file of a figure and notes it.
+pub fn keep(files: &mut Vec<PathBuf>, path: &Path, text: &str) -> Result<(), Failure> {
+    output::save(path, text)?;
+    files.push(path.to_owned());
+    Ok(())
+}
