@@ -5,6 +5,7 @@ use std::path::Path;
 use aep_core::{Aep, MetaEp, Method};
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Library, Model};
+use missing_physics::data_check::cut_at_gaps;
 use missing_physics::discover::{evaluate, terms, weights};
 use missing_physics::fit::Fit;
 use missing_physics::report::{Rung, Verdict};
@@ -23,9 +24,10 @@ type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
 pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
 
-/// The model family of a recording.
+/// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
-    Ok(FrictionFamily::new(recording, &Options { bandwidth, library: Library::builtin() })?)
+    let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
+    Ok(FrictionFamily::new(&whole, &Options { bandwidth, library: Library::builtin() })?)
 }
 
 /// Reads MODEL.json.

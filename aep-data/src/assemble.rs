@@ -11,6 +11,12 @@ use crate::pick::Pick;
 use crate::role::{self, Role};
 use crate::table::Table;
 
+/// Largest value in SI that any channel may have.
+const LARGEST: f64 = 1e12;
+/// Shortest and longest sampling interval, s.
+const SHORTEST: f64 = 1e-8;
+const LONGEST: f64 = 10.0;
+
 /// A recording and how it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
@@ -105,7 +111,11 @@ fn recording(
         match pick.role {
             Role::Time => time = Some(values),
             Role::Segment => segment = Some(whole(&values, pick, table, path)?),
-            role => channels.push(Channel::new(role.facts().name, unit(role, rotary), values)),
+            role => {
+                let unit = unit(role, rotary);
+                check_size(&values, unit, pick, table, path)?;
+                channels.push(Channel::new(role.facts().name, unit, values));
+            }
         }
     }
     let samples = channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0);
@@ -114,7 +124,32 @@ fn recording(
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let recording = Recording::with_segments(name, time, channels, segment)
         .map_err(|error| located(error, picks, table, path))?;
+    check_interval(recording.interval()).map_err(|problem| DataError::new(path, problem))?;
     Ok(recording.with_hold(mapping.hold.unwrap_or_default()))
+}
+
+/// Refuses values so large that no machine has them and that squares of them overflow.
+fn check_size(
+    values: &[f64],
+    unit: &'static str,
+    pick: &Pick,
+    table: &dyn Table,
+    path: &Path,
+) -> Result<(), DataError> {
+    let Some(sample) = values.iter().position(|value| value.abs() > LARGEST) else {
+        return Ok(());
+    };
+    let (role, value) = (pick.role.facts().name, values[sample]);
+    let error = DataError::new(path, Problem::Implausible { role, value, unit });
+    Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression))
+}
+
+/// Refuses intervals that come of a wrong unit; one sample a segment has none.
+fn check_interval(interval: f64) -> Result<(), Problem> {
+    if interval == 0.0 || (SHORTEST..=LONGEST).contains(&interval) {
+        return Ok(());
+    }
+    Err(Problem::Interval { interval })
 }
 
 /// The times: as recorded, or counted from an interval.

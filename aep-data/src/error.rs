@@ -250,6 +250,22 @@ pub enum Problem {
         /// Time of this sample, s.
         after: f64,
     },
+    /// A value that no drive has.
+    #[error("a {role} of {value:.2e} {unit} is out of all reason")]
+    Implausible {
+        /// What it is.
+        role: &'static str,
+        /// The value in SI.
+        value: f64,
+        /// SI unit.
+        unit: &'static str,
+    },
+    /// A sampling interval that no recording of a drive has.
+    #[error("one sample every {interval:.2e} s is no recording of a drive")]
+    Interval {
+        /// The interval, s.
+        interval: f64,
+    },
     /// Segment numbers that are no whole numbers.
     #[error("segment {value} is not a whole number")]
     Segment {
@@ -365,6 +381,12 @@ impl Problem {
             Self::TimeBackwards { .. } => {
                 "sort the rows by time; where a new run begins, number the runs in a column 'segment'"
                     .to_owned()
+            }
+            Self::Implausible { role, .. } => {
+                format!("check unit and gain: --{role}-unit UNIT, --{role}-gain G, or in {toml}")
+            }
+            Self::Interval { .. } => {
+                "say the unit of the time: --time-unit ms, or the interval: --interval S".to_owned()
             }
             Self::Segment { .. } => "number the segments 0, 1, 2, ...".to_owned(),
             Self::Toml { .. } => {

@@ -110,6 +110,16 @@ fn units_that_are_unknown_wrong_or_need_a_gain() {
 }
 
 #[test]
+fn values_out_of_all_reason_are_refused() {
+    let error = csv(&with_line(5, "0.003,1e300,0.1"));
+    assert_says(&error, &["a force of 1.00e300 N", "line 5, column 'force_N'", "--force-unit"]);
+    let days =
+        Mapping { time: Source { gain: Some(1e6), ..Source::default() }, ..Mapping::default() };
+    let error = mapped(&with_line(5, "0.003,1.5,0.03"), &days);
+    assert_says(&error, &["one sample every", "--time-unit ms"]);
+}
+
+#[test]
 fn linear_and_rotary_do_not_mix() {
     let error = csv(&with_line(1, "time_s,force_N,angle_rad"));
     assert_says(&error, &["'force_N' in N is linear", "'angle_rad' in rad is rotary"]);

@@ -23,7 +23,7 @@ const OTHERS: [&str; 3] = ["c3", "c4", "c0"];
 /// The plot with its title and legend; nothing where it has no finite point.
 pub(crate) fn figure(plot: &Plot) -> Option<String> {
     let curves: Vec<Curve> = plot.curves.iter().filter_map(cleaned).collect();
-    let x = Scale::of(curves.iter().flat_map(|c| &c.x), LEFT, WIDTH - RIGHT)?;
+    let x = Scale::fitting(curves.iter().flat_map(|c| &c.x), LEFT, WIDTH - RIGHT)?;
     let y = Scale::of(curves.iter().flat_map(|c| &c.y), HEIGHT - BOTTOM, TOP)?;
     let drawn: String =
         curves.iter().enumerate().map(|(k, c)| curve(c, colour(c, k), &x, &y)).collect();

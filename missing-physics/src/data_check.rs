@@ -10,12 +10,14 @@ use crate::quantity::{percent, quantity};
 use crate::recording::{Channel, Recording};
 
 mod cycle;
+mod gaps;
 mod quantum;
 mod sampling;
 mod saturation;
 mod speed;
 
 pub use cycle::Cycle;
+pub use gaps::cut_at_gaps;
 pub use sampling::{Gap, Sampling};
 pub use saturation::Saturation;
 pub use speed::Speed;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use aep_data::Loaded;
 use anstyle::AnsiColor;
+use missing_physics::Hold;
 use missing_physics::data_check::{DataCheck, Severity};
 use missing_physics::quantity::{percent, quantity};
 
@@ -33,8 +34,12 @@ fn overview(loaded: &Loaded, check: &DataCheck) -> String {
         pieces => format!(" in {pieces} segments"),
     };
     let layout = loaded.layout.map(|name| format!("; recognised as {name}")).unwrap_or_default();
+    let hold = match loaded.recording.hold() {
+        Hold::ZeroOrder => "; the force is a command, held between samples",
+        Hold::Sampled => "; the force is taken as sampled (see --hold)",
+    };
     format!(
-        "{} samples{pieces} over {}, one every {}{layout}",
+        "{} samples{pieces} over {}, one every {}{layout}{hold}",
         check.samples,
         quantity(check.sampling.duration_s, "s"),
         quantity(check.sampling.interval_s, "s"),

@@ -10,10 +10,12 @@ use missing_physics::report::{Candidate, RegimeShare, Rung, SplitError, Verdict,
 
 use super::bars::bar;
 use super::style::{dim, paint};
-use super::table::{Align, Table};
+use super::table::{self, Align, Table};
 
 /// From this p-value on a dependence may well be chance.
 const CHANCE: f64 = 0.05;
+/// Columns of a terminal from which the errors on fitted data have room, too.
+const WIDE: u16 = 100;
 /// How the notes of most coordinates begin.
 const MEAN_ERROR: &str = "largest mean error";
 /// Width of the bars.
@@ -73,15 +75,18 @@ pub fn ladder(discovery: &Discovery) -> String {
             format!("{} {kind}", name.quantity)
         })
         .collect();
+    let fitted = table::width() >= WIDE;
     let mut columns = vec![("rung", Align::Left), ("", Align::Bar)];
     for heading in &headings {
         columns.push((heading, Align::Right));
-        columns.push(("fitted", Align::Right));
+        if fitted {
+            columns.push(("fitted", Align::Right));
+        }
     }
     columns.push(("p-value", Align::Right));
     let mut table = Table::new(&columns);
     for rung in &discovery.ladder {
-        table.row(ladder_row(rung, &names, largest));
+        table.row(ladder_row(rung, &names, largest, fitted));
     }
     let mut text = table.text();
     if let Some(floor) = words::floor(discovery, main) {
@@ -94,7 +99,7 @@ pub fn ladder(discovery: &Discovery) -> String {
     text
 }
 
-fn ladder_row(rung: &Rung, names: &[words::ErrorName], largest: f64) -> Vec<String> {
+fn ladder_row(rung: &Rung, names: &[words::ErrorName], largest: f64, fitted: bool) -> Vec<String> {
     let error = |name: &words::ErrorName| rung.error.get(&name.key);
     let main = error(&names[0]).map_or(0.0, |error| error.validation);
     let mut cells = vec![words::rung(rung), bar(main / largest, BAR)];
@@ -103,7 +108,9 @@ fn ladder_row(rung: &Rung, names: &[words::ErrorName], largest: f64) -> Vec<Stri
             error(name).map_or_else(|| "-".to_owned(), |error| name.value(pick(error)))
         };
         cells.push(text(|error| error.validation));
-        cells.push(text(|error| error.fit));
+        if fitted {
+            cells.push(text(|error| error.fit));
+        }
     }
     cells.push(rung.p_value.map_or_else(|| "-".to_owned(), words::p_value));
     cells

@@ -1,7 +1,8 @@
 //! Tables: a heading, a line, rows; numbers to the right.
 
 use comfy_table::{
-    Attribute, Cell, CellAlignment, Color, ContentArrangement, LineStyle, TableStyle,
+    Attribute, Cell, CellAlignment, Color, ColumnConstraint, ContentArrangement, LineStyle,
+    TableStyle,
 };
 
 /// Where the cells of a column stand.
@@ -26,6 +27,11 @@ const STYLE: TableStyle =
     TableStyle::new().header_separator(LineStyle::none().fill('─').junction('─'));
 /// Width of a table where there is no terminal to ask.
 const WIDTH: u16 = 110;
+
+/// Columns of the terminal.
+pub fn width() -> u16 {
+    comfy_table::Table::new().width().unwrap_or(WIDTH)
+}
 
 impl Table {
     /// A table with these headings.
@@ -54,7 +60,11 @@ impl Table {
     }
 
     /// The table as text, one line at the end.
-    pub fn text(&self) -> String {
+    pub fn text(mut self) -> String {
+        // Names stay on one line; what wraps are the words to their right.
+        if let Some(names) = self.table.column_mut(0) {
+            names.set_constraint(ColumnConstraint::ContentWidth);
+        }
         let text = self.table.to_string();
         let lines: Vec<String> =
             text.lines().map(|line| format!(" {}\n", line.trim_end())).collect();

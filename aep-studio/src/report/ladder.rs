@@ -7,7 +7,7 @@ use crate::html::{self, escape, table};
 use crate::words::{self, ErrorName};
 
 const LEAD: &str = "Each rung is one effect more. What counts is the error on held-out data, \
-    which took no part in the fit; the line marks the noise, below which no model gets.";
+    which took no part in the fit; the line marks the noise floor, as estimated from the data.";
 
 /// The section of the ladder.
 pub(super) fn section(discovery: &Discovery) -> String {
@@ -33,7 +33,7 @@ fn bars(discovery: &Discovery, name: &ErrorName) -> String {
     let rows: String =
         errors.iter().map(|(rung, error)| row(rung, *error, name, largest, floor)).collect();
     let key = "<div class=legend><span><i class=c1></i>held-out data</span>\
-               <span><i class=c5></i>fitted data</span><span><i class=floor></i>noise</span></div>";
+               <span><i class=c5></i>fitted data</span><span><i class=floor></i>noise floor</span></div>";
     format!("{key}<div class=ladder>{rows}</div>")
 }
 

@@ -68,7 +68,7 @@ fn numbers(discovery: &Discovery) -> String {
         facts.push((name.value(last), "with what was added".to_owned()));
     }
     if let Some(floor) = words::floor(discovery, &name) {
-        facts.push((name.value(floor), "noise: no model gets below".to_owned()));
+        facts.push((name.value(floor), "noise floor".to_owned()));
     }
     let facts = concat(facts.into_iter().map(|(value, text)| {
         format!("<div><b>{}</b><span>{}</span></div>", escape(&value), escape(&text))

@@ -2,12 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::gaps::BRIDGED;
 use super::{Finding, neighbours};
 use crate::quantity::{percent, quantity};
 use crate::recording::Recording;
 
 /// A step this many intervals long is a gap.
 const GAP: f64 = 2.5;
+
+/// A sampling interval longer than this is probably in another unit, s.
+const SLOW: f64 = 0.2;
 
 /// A hole in the samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +65,7 @@ impl Sampling {
     pub(super) fn findings(&self, findings: &mut Vec<Finding>) {
         if let Some(longest) = self.gaps.first() {
             findings.push(Finding::warning(format!(
-                "{} in the samples, the longest {} at {:.3} s: what happens inside is not compared",
+                "{} in the samples, the longest {} at {:.3} s: {}",
                 if self.gaps.len() == 1 {
                     "a gap".to_owned()
                 } else {
@@ -69,6 +73,17 @@ impl Sampling {
                 },
                 quantity(longest.length_s, "s"),
                 longest.at_s,
+                if longest.length_s > BRIDGED * self.interval_s {
+                    "the recording is cut into segments there"
+                } else {
+                    "bridged by straight lines"
+                },
+            )));
+        }
+        if self.interval_s > SLOW {
+            findings.push(Finding::warning(format!(
+                "one sample every {} is slow for a drive: is the time really in seconds?",
+                quantity(self.interval_s, "s"),
             )));
         }
         if self.jitter > 0.05 {
