@@ -26,11 +26,13 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<(), SaveError> {
         .map_err(|error| SaveError { path: path.to_owned(), source: without_path(error) })
 }
 
-/// The system's own error: the name of the file in between means nothing to the user.
+/// What the system says: the name of the file in between, which `tempfile` adds, means nothing to
+/// the user.
 fn without_path(error: std::io::Error) -> std::io::Error {
-    let inner = error.get_ref().and_then(std::error::Error::source);
-    let inner = inner.and_then(|source| source.downcast_ref::<std::io::Error>());
-    inner.and_then(std::io::Error::raw_os_error).map_or(error, std::io::Error::from_raw_os_error)
+    match error.to_string().split_once(" at path ") {
+        Some((said, _)) => std::io::Error::new(error.kind(), said),
+        None => error,
+    }
 }
 
 fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
