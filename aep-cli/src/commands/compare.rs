@@ -50,7 +50,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let report =
         Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
     let files = report.save(&args.results)?;
-    if global.quiet || args.results.json_on_stdout() {
+    if global.quiet || args.results.own_stdout() {
         return Ok(());
     }
     let text = heading(&format!("Errors of {effects}"))
