@@ -8,8 +8,11 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::effects::{Effect, Motion, Parameters, Role, Slot, Smooth, broadcast};
+use crate::effects::{Effect, Leg, Motion, Onset, Parameters, Role, Slot, Smooth, broadcast};
 use crate::model::{MASS, Model, Term, address};
+use crate::simd::sign;
+
+mod memory;
 
 /// Samples that go through the hooks at once: large enough to hide the calls, small enough for the
 /// first-level cache.
@@ -52,7 +55,11 @@ pub struct MeasuredMotion<'a> {
     acceleration: &'a [f64],
     drive_force: Option<&'a [f64]>,
     segments: Vec<Range<usize>>,
+    rest_velocity: f64,
 }
+
+/// Share of the top speed below which a motion counts as rest, unless something else is asked for.
+const REST: f64 = 1e-3;
 
 impl<'a> MeasuredMotion<'a> {
     /// One piece of motion, one value per time.
@@ -69,7 +76,9 @@ impl<'a> MeasuredMotion<'a> {
         check("velocity", velocity, time)?;
         check("acceleration", acceleration, time)?;
         let segments = std::iter::once(0..time.len()).collect();
-        Ok(Self { time, position, velocity, acceleration, drive_force: None, segments })
+        let rest_velocity = REST * velocity.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
+        let drive_force = None;
+        Ok(Self { time, position, velocity, acceleration, drive_force, segments, rest_velocity })
     }
 
     /// The same in several pieces; contact and memory start anew in each.
@@ -93,6 +102,14 @@ impl<'a> MeasuredMotion<'a> {
         check("drive force", force, self.time)?;
         self.drive_force = Some(force);
         Ok(self)
+    }
+
+    /// The same with rest wherever the speed is at most `velocity`, for effects that depend on the
+    /// time at rest. Without it, rest is below 0.1 % of the top speed.
+    #[must_use]
+    pub fn with_rest_velocity(mut self, velocity: f64) -> Self {
+        self.rest_velocity = velocity;
+        self
     }
 
     /// Number of samples.
@@ -164,6 +181,8 @@ struct Walk<'a> {
     level_velocity: Cow<'a, [f64]>,
     dwell: Vec<f64>,
     bond: Vec<f64>,
+    /// Level that memories add; empty without any.
+    remembered: Vec<f64>,
     drive_force: Cow<'a, [f64]>,
     /// Force of everything smooth.
     smooth: Vec<f64>,
@@ -186,6 +205,7 @@ impl<'a> Walk<'a> {
             level_velocity: Cow::from(motion.velocity),
             dwell: vec![0.0; samples],
             bond: vec![1.0; samples],
+            remembered: Vec::new(),
             drive_force,
             smooth: Vec::new(),
             mass: model.mass(),
@@ -193,11 +213,16 @@ impl<'a> Walk<'a> {
             used: Vec::new(),
             attached: Vec::new(),
         };
+        if model.terms().iter().any(|term| term.effect().reads_dwell()) {
+            walk.dwell = memory::dwell(motion);
+        }
+        walk.recall(model.terms());
         walk.smooth = walk.smooth_force(model.terms());
         let level = walk.friction_level(model.terms());
-        walk.slide(model, &level);
+        let breakaway = walk.breakaway(model.terms(), &level);
+        walk.slide(model, &level, &breakaway);
         for term in model.terms().iter().filter(|t| t.effect().about().acts_on(Slot::Attached)) {
-            let force = walk.element(term, &vec![0.0; samples]);
+            let force = walk.element(term, &vec![0.0; samples], &vec![0.0; samples]);
             walk.attached.resize(samples, 0.0);
             add(&mut walk.attached, &force);
         }
@@ -205,10 +230,10 @@ impl<'a> Walk<'a> {
     }
 
     /// Friction force and utilisation at `level`.
-    fn slide(&mut self, model: &Model, level: &[f64]) {
+    fn slide(&mut self, model: &Model, level: &[f64], breakaway: &[f64]) {
         let contact = model.terms().iter().find(|t| t.effect().about().acts_on(Slot::Contact));
         if let Some(contact) = contact {
-            self.friction = self.element(contact, level);
+            self.friction = self.element(contact, level, breakaway);
             let used =
                 |(force, level): (&f64, &f64)| if *level > 0.0 { force / level } else { 0.0 };
             self.used = self.friction.iter().zip(level).map(used).collect();
@@ -219,15 +244,16 @@ impl<'a> Walk<'a> {
     }
 
     /// Force of a term's element along the motion.
-    fn element(&self, term: &Term, level: &[f64]) -> Vec<f64> {
+    fn element(&self, term: &Term, level: &[f64], breakaway: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; self.motion.len()];
         let Some(element) = term.effect().element() else { return force };
         let mut state = vec![0.0; element.states()];
         for segment in self.motion.segments.iter().filter(|segment| !segment.is_empty()) {
-            let path = self.path(segment, level);
+            let path = self.path(segment, level, breakaway);
             let level = level[segment.start];
             let used = self.used_at_start(segment, level);
-            element.start(term.values(), level, used, &mut state);
+            let velocity = self.motion.velocity[segment.start];
+            element.start(term.values(), &Onset { level, used, velocity }, &mut state);
             element.along(term.values(), &path, &mut state, &mut force[segment.clone()]);
         }
         force
@@ -250,12 +276,17 @@ impl<'a> Walk<'a> {
         (window.map(load).sum::<f64>() / count / level).clamp(-1.0, 1.0)
     }
 
-    /// Duration, displacement and level of the step to each sample.
-    fn path(&self, segment: &Range<usize>, level: &[f64]) -> Vec<(f64, f64, f64)> {
+    /// The steps to the samples of a segment.
+    fn path(&self, segment: &Range<usize>, level: &[f64], breakaway: &[f64]) -> Vec<Leg> {
         let (time, position) = (self.motion.time, self.motion.position);
         let step = |k: usize| {
             let before = if k == segment.start { k } else { k - 1 };
-            (time[k] - time[before], position[k] - position[before], level[k])
+            Leg {
+                duration: time[k] - time[before],
+                displacement: position[k] - position[before],
+                level: level[k],
+                breakaway: breakaway[k],
+            }
         };
         segment.clone().map(step).collect()
     }
@@ -272,10 +303,27 @@ impl<'a> Walk<'a> {
         let mut level = self.sum(terms, Slot::FrictionLevel, |effect, p, m, level| {
             effect.friction_level(p, m, level);
         });
+        add(&mut level, &self.remembered);
         for level in &mut level {
             *level = level.max(0.0);
         }
         level
+    }
+
+    /// Friction level at rest, where the contact wants it.
+    fn breakaway(&self, terms: &[Term], level: &[f64]) -> Vec<f64> {
+        let mut elements = terms.iter().filter_map(|term| term.effect().element());
+        if !elements.any(crate::effects::Element::needs_breakaway) {
+            return level.to_vec();
+        }
+        let rest = [0.0; BLOCK];
+        let mut breakaway = self.sum(terms, Slot::FrictionLevel, |effect, p, m, level| {
+            let rest = &rest[..level.len()];
+            let m = Motion { velocity: rest, level_velocity: rest, ..*m };
+            effect.friction_level(p, &m, level);
+        });
+        add(&mut breakaway, &self.remembered);
+        breakaway
     }
 
     /// Column of amplitude `k` of `term`.
@@ -336,10 +384,6 @@ impl<'a> Walk<'a> {
             }
         }
     }
-}
-
-fn sign(v: f64) -> f64 {
-    if v == 0.0 { 0.0 } else { v.signum() }
 }
 
 fn add(to: &mut [f64], from: &[f64]) {

@@ -27,6 +27,7 @@ pub mod simulator;
 pub mod windows;
 
 mod signal;
+mod simd;
 
 pub use axis::{Axis, Quantity};
 pub use challenge::Challenge;

@@ -54,7 +54,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         return Ok(());
     }
     let text = heading(&format!("Errors of {effects}"))
-        + &output::ladder(&discovery)
+        + &output::ladder(&discovery, "the model")
         + &heading("Where it fails")
         + &output::regimes(&discovery.regimes)
         + "\n"

@@ -123,7 +123,7 @@ fn story(discovery: &Discovery) -> String {
         text += &output::parameters(last);
     }
     text += &heading("The ladder");
-    text += &output::ladder(discovery);
+    text += &output::ladder(discovery, "base model");
     text + &output::verdict(discovery)
 }
 

@@ -79,7 +79,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         return Ok(());
     }
     let text = heading(&format!("Before and after {added}"))
-        + &output::ladder(&discovery)
+        + &output::ladder(&discovery, "before")
         + &heading("Parameters")
         + &output::parameters(&last)
         + &heading("Where it fails now")

@@ -75,7 +75,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let text = heading(&title)
         + &output::parameters(&rung)
         + &heading("Errors")
-        + &output::ladder(&discovery)
+        + &output::ladder(&discovery, "the model")
         + &files;
     output::print(&text)
 }

@@ -11,8 +11,8 @@ use crate::model::{Model, ModelError, address};
 /// Effects that every axis has.
 const BASE: [&str; 3] = ["coulomb", "viscous", "offset"];
 
-/// Effects that need another machine than a ball-screw table, or another recording.
-const NOT_HERE: [&str; 1] = ["gravity-pendulum"];
+/// Effects that change another one: the table has that as well, and `random` does not choose them.
+const COMPANIONS: [(&str, &str); 1] = [("frictional-memory", "stribeck")];
 
 /// Screw leads on the market, m.
 const LEADS: [f64; 4] = [2.5e-3, 4e-3, 5e-3, 10e-3];
@@ -38,8 +38,11 @@ impl Draw {
         match hide {
             Hide::Nothing => Ok(None),
             Hide::Random => {
-                let able: Vec<_> =
-                    ALL.iter().filter(|effect| can_hide(effect.about().name)).collect();
+                let alone = |name: &str| COMPANIONS.iter().all(|(effect, _)| *effect != name);
+                let able: Vec<_> = ALL
+                    .iter()
+                    .filter(|effect| can_hide(**effect) && alone(effect.about().name))
+                    .collect();
                 Ok(Some(*able[self.random.random_range(0..able.len())]))
             }
             Hide::Effect(name) if BASE.contains(&name.as_str()) => {
@@ -47,12 +50,20 @@ impl Draw {
             }
             Hide::Effect(name) => {
                 let effect = find(name)?;
-                if can_hide(name) {
+                if can_hide(effect) {
                     Ok(Some(effect))
                 } else {
                     Err(ChallengeError::NotHere(name.clone()))
                 }
             }
+        }
+    }
+
+    /// `base` with what `effect` acts on, if that is an effect of its own.
+    pub fn companion(&mut self, base: Model, effect: &dyn Effect) -> Result<Model, ModelError> {
+        match COMPANIONS.iter().find(|(name, _)| *name == effect.about().name) {
+            None => Ok(base),
+            Some((_, companion)) => self.full(&base, find(companion)?),
         }
     }
 
@@ -95,6 +106,6 @@ impl Draw {
     }
 }
 
-fn can_hide(name: &str) -> bool {
-    !BASE.contains(&name) && !NOT_HERE.contains(&name)
+fn can_hide(effect: &dyn Effect) -> bool {
+    !BASE.contains(&effect.about().name) && effect.suits(Axis::Linear) && effect.shows_in_force()
 }

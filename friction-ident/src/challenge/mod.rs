@@ -136,6 +136,7 @@ pub fn generate(hide: &Hide, seed: u64, level: Level) -> Result<Challenge, Chall
     let (model, hidden_force) = match hidden {
         None => (base, 0.0),
         Some(effect) => {
+            let base = draw.companion(base, effect)?;
             let full = draw.full(&base, effect)?;
             size::scaled(&base, &full, effect, ratio, seed)?
         }

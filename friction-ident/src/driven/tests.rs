@@ -108,6 +108,20 @@ fn columns_times_values_are_the_force() {
 }
 
 #[test]
+fn dwell_grows_while_the_axis_stands_and_keeps_its_length_while_it_slides() {
+    let time: Vec<f64> = (0..40).map(|k| f64::from(k) * 0.1).collect();
+    let velocity: Vec<f64> =
+        (0..40).map(|k| if (10..20).contains(&k) { 1e-6 } else { 0.1 }).collect();
+    let motion = MeasuredMotion::new(&time, &time, &velocity, &time).unwrap();
+    let dwell = memory::dwell(&motion);
+    assert_eq!((dwell[5], dwell[10]), (0.0, 0.0));
+    assert!((dwell[15] - 0.5).abs() < 1e-12 && (dwell[19] - 0.9).abs() < 1e-12);
+    assert!((dwell[30] - 0.9).abs() < 1e-12);
+    let dwell = memory::dwell(&motion.with_rest_velocity(1e-7));
+    assert!(dwell.iter().all(|dwell| *dwell == 0.0));
+}
+
+#[test]
 fn channels_that_do_not_fit_are_named() {
     let error = MeasuredMotion::new(&[0.0, 1.0], &[0.0, 0.0], &[0.0], &[0.0, 0.0]).unwrap_err();
     assert_eq!(error, MotionError::Length { channel: "velocity", values: 1, samples: 2 });

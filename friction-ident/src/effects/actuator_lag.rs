@@ -1,6 +1,6 @@
 //! The current loop: the force follows its command like a first-order lag.
 
-use super::{About, Drive, Effect, Parameter, Parameters, Slot};
+use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::signal::derivative;
 
@@ -40,11 +40,11 @@ impl Drive for ActuatorLag {
         state[0] = command;
     }
 
-    fn advance(&self, p: Parameters<'_>, duration: &[f64], state: &mut [f64], force: &mut [f64]) {
+    fn advance(&self, p: Parameters<'_>, step: &Advance<'_>, state: &mut [f64], force: &mut [f64]) {
         for (i, (force, state)) in force.iter_mut().zip(state).enumerate() {
             // Exact for a command that is constant over the step; the mean force is what the
             // momentum of the mass sees.
-            let (command, ratio) = (*force, duration[i] / p.get(0)[i]);
+            let (command, ratio) = (*force, step.duration[i] / p.get(0)[i]);
             let left = (-ratio).exp();
             let mean = if ratio > 1e-8 { (1.0 - left) / ratio } else { 1.0 };
             let mean = if ratio.is_finite() { mean } else { 0.0 };
@@ -63,16 +63,22 @@ impl Drive for ActuatorLag {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Past;
     use super::*;
+
+    fn step(tau: f64, state: &mut [f64], force: &mut [f64]) {
+        let (duration, past) = ([1e-3], Past::default());
+        let step = Advance { duration: &duration, end: &[0.0], past: &past };
+        ActuatorLag.advance(Parameters::new(&[tau], 1), &step, state, force);
+    }
 
     #[test]
     fn a_step_of_the_command_arrives_exponentially_and_its_mean_is_exact() {
-        let (tau, dt) = ([2e-3], [1e-3]);
         let (mut state, mut impulse) = ([0.0], 0.0);
         for _ in 0..5 {
             let mut force = [10.0];
-            ActuatorLag.advance(Parameters::new(&tau, 1), &dt, &mut state, &mut force);
-            impulse += force[0] * dt[0];
+            step(2e-3, &mut state, &mut force);
+            impulse += force[0] * 1e-3;
         }
         let left = (-2.5f64).exp();
         assert!((state[0] - 10.0 * (1.0 - left)).abs() < 1e-12);
@@ -82,7 +88,7 @@ mod tests {
     #[test]
     fn without_a_time_constant_nothing_changes() {
         let (mut state, mut force) = ([3.0], [10.0]);
-        ActuatorLag.advance(Parameters::new(&[0.0], 1), &[1e-3], &mut state, &mut force);
+        step(0.0, &mut state, &mut force);
         assert_eq!((state[0], force[0]), (10.0, 10.0));
     }
 

@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::{sign, vectorised};
 
 /// Half differences: `F_C+ = F_C + dF_C`, `F_C- = F_C - dF_C`, likewise for `F_v`.
 ///
@@ -41,19 +42,28 @@ impl Effect for Asymmetry {
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
-        for ((level, half), direction) in level.iter_mut().zip(p.get(0)).zip(m.direction) {
+        shift(p.get(0), m.direction, level);
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        tilt(p.get(1), m.velocity, out.force, out.damping);
+    }
+}
+
+vectorised! {
+    fn shift(half: &[f64], direction: &[f64], level: &mut [f64]) {
+        for ((level, half), direction) in level.iter_mut().zip(half).zip(direction) {
             *level += half * direction;
         }
     }
 
-    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let (half, velocity) = (&p.get(1)[..lanes], &m.velocity[..lanes]);
-        let (force, slope) = (&mut out.force[..lanes], &mut out.damping[..lanes]);
-        for i in 0..lanes {
+    fn tilt(half: &[f64], velocity: &[f64], force: &mut [f64], slope: &mut [f64]) {
+        let n = force.len();
+        let (half, velocity, slope) = (&half[..n], &velocity[..n], &mut slope[..n]);
+        for i in 0..n {
             force[i] += half[i] * velocity[i].abs();
             // Negative on one side: there it lowers the positive slope of `viscous`.
-            slope[i] += half[i] * velocity[i].signum();
+            slope[i] += half[i] * sign(velocity[i]);
         }
     }
 }

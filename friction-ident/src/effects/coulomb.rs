@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
+use crate::simd::add_to;
 
 /// `F_C s`.
 #[derive(Clone, Copy, Debug)]
@@ -23,9 +24,7 @@ impl Effect for Coulomb {
     }
 
     fn friction_level(&self, p: Parameters<'_>, _m: &Motion<'_>, level: &mut [f64]) {
-        for (level, coulomb) in level.iter_mut().zip(p.get(0)) {
-            *level += coulomb;
-        }
+        add_to(level, p.get(0));
     }
 }
 

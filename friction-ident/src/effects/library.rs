@@ -27,9 +27,12 @@ pub struct Library {
     effects: Vec<&'static dyn Effect>,
 }
 
+/// What a comparison of forces can show of [`ALL`]: see [`Effect::shows_in_force`].
 impl Default for Library {
     fn default() -> Self {
-        Self::builtin()
+        let mut library = Self::builtin();
+        library.effects.retain(|effect| effect.shows_in_force());
+        library
     }
 }
 

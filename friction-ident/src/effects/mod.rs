@@ -5,18 +5,32 @@
 //! into a [`Library`].
 
 mod about;
+mod drive;
+mod element;
 mod lanes;
 mod library;
+mod memory;
+mod past;
 
 pub mod actuator_lag;
 pub mod asymmetry;
+pub mod backlash;
 pub mod coulomb;
+pub mod drift;
+pub mod encoder;
+pub mod flexible_coupling;
+pub mod frictional_memory;
 pub mod gravity_pendulum;
+pub mod input_delay;
+pub mod load_friction;
+pub mod motor_gain;
 pub mod offset;
 pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
 pub mod ripple;
+pub mod rising_static_friction;
+pub mod saturation;
 pub mod shear_thinning;
 pub mod spring;
 pub mod stribeck;
@@ -28,8 +42,12 @@ mod testing;
 use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
+pub use drive::{Advance, Drive};
+pub use element::{Balance, Element, Leg, Onset, Response, Step};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
+pub use memory::{Memory, Recalled, Taken};
+pub use past::Past;
 
 /// A physical effect. Every hook adds to its output, lane by lane; all slices are equally long.
 ///
@@ -65,82 +83,30 @@ pub trait Effect: Sync + Send {
     fn drive(&self) -> Option<&dyn Drive> {
         None
     }
-}
 
-/// Something with a state of its own that answers a displacement of the mass with a force: the
-/// elastic friction contact, a second body behind a coupling.
-///
-/// The force at the end of a step must not decrease with the displacement in the step: then the
-/// implicit step has exactly one solution.
-pub trait Element: Sync + Send {
-    /// State variables per lane.
-    fn states(&self) -> usize;
-
-    /// State of one lane at rest (`direction` 0) or in full sliding (`direction` -1 or 1) at
-    /// friction `level`; `p` are the lane's parameters.
-    fn start(&self, p: &[f64], level: f64, direction: f64, state: &mut [f64]);
-
-    /// Force at the start of the step.
-    fn force(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], force: &mut [f64]);
-
-    /// Resisting force at the end of the step, and its slope against the displacement.
-    /// `state[k * lanes + i]` is variable `k` in lane `i`.
-    fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>);
-
-    /// Takes the step: the state at its end.
-    fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]);
-
-    /// Newton iterations that the implicit step needs.
-    fn iterations(&self) -> usize;
-
-    /// Force at every sample of a measured path: sample `k` is reached by `path[k]`.
-    fn along(&self, p: &[f64], path: &[(f64, f64, f64)], state: &mut [f64], force: &mut [f64]) {
-        let p = Parameters::new(p, 1);
-        for (&(duration, displacement, level), force) in path.iter().zip(force) {
-            let (duration, displacement, level) = ([duration], [displacement], [level]);
-            let step = Step { duration: &duration, displacement: &displacement, level: &level };
-            let mut stiffness = [0.0];
-            let force = std::slice::from_mut(force);
-            self.respond(p, &step, state, &mut Response { force, stiffness: &mut stiffness });
-            self.commit(p, &step, state);
-        }
+    /// Slot [`Slot::Memory`].
+    fn memory(&self) -> Option<&dyn Memory> {
+        None
     }
-}
 
-/// A step of the mass as an [`Element`] sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct Step<'a> {
-    /// Length of the step, s.
-    pub duration: &'a [f64],
-    /// Displacement of the mass in the step, m or rad.
-    pub displacement: &'a [f64],
-    /// Friction level in the step, N or N m.
-    pub level: &'a [f64],
-}
+    /// Slot [`Slot::Sensor`]: replaces true positions of one plant by what the sensor shows.
+    fn show(&self, _p: &[f64], _position: &mut [f64]) {}
 
-/// What an [`Element`] answers.
-#[derive(Debug)]
-pub struct Response<'a> {
-    /// To be added to: force at the end of the step.
-    pub force: &'a mut [f64],
-    /// To be added to: slope of `force` against the displacement, at least 0.
-    pub stiffness: &'a mut [f64],
-}
+    /// For effects with a hump of the level at rest: writes the share of it that is left at
+    /// `level_velocity` and returns true.
+    fn hump(&self, _p: Parameters<'_>, _level_velocity: &[f64], _share: &mut [f64]) -> bool {
+        false
+    }
 
-/// What happens to the commanded force on its way to the mass.
-pub trait Drive: Sync + Send {
-    /// State variables per lane.
-    fn states(&self) -> usize;
+    /// Whether a hook depends on `m.dwell`.
+    fn reads_dwell(&self) -> bool {
+        false
+    }
 
-    /// State of one lane after a long time at constant `command`.
-    fn start(&self, p: &[f64], command: f64, state: &mut [f64]);
-
-    /// Advances by `duration` under `force`, the command's mean over the step, and replaces `force`
-    /// by the mean of what comes out.
-    fn advance(&self, p: Parameters<'_>, duration: &[f64], state: &mut [f64], force: &mut [f64]);
-
-    /// Replaces `force`, one contiguous piece sampled at `time`, by the command that yields it.
-    fn invert(&self, p: &[f64], time: &[f64], force: &mut [f64]);
+    /// Whether a comparison of forces along a measured motion can show it at all.
+    fn shows_in_force(&self) -> bool {
+        true
+    }
 }
 
 /// Every effect there is, in the order of the documentation.
@@ -150,14 +116,24 @@ pub static ALL: &[&dyn Effect] = &[
     &offset::Offset,
     &asymmetry::Asymmetry,
     &stribeck::STRIBECK,
-    &presliding::Presliding,
+    &frictional_memory::FrictionalMemory,
+    &rising_static_friction::RisingStaticFriction,
+    &presliding::PRESLIDING,
     &ripple::Ripple,
     &position_friction::PositionFriction,
     &spring::Spring,
     &gravity_pendulum::GravityPendulum,
     &quadratic_drag::QuadraticDrag,
+    &load_friction::LoadFriction,
+    &drift::Drift,
     &shear_thinning::ShearThinning,
     &actuator_lag::ActuatorLag,
+    &input_delay::InputDelay,
+    &saturation::Saturation,
+    &motor_gain::MotorGain,
+    &flexible_coupling::FlexibleCoupling,
+    &backlash::Backlash,
+    &encoder::Encoder,
 ];
 
 /// The effect called `name` (`effect` or `effect:form`) among [`ALL`].

@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::add_to;
 
 /// `F_0`.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +30,7 @@ impl Effect for Offset {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, _m: &Motion<'_>, out: &mut Smooth<'_>) {
-        for (force, offset) in out.force.iter_mut().zip(p.get(0)) {
-            *force += offset;
-        }
+        add_to(out.force, p.get(0));
     }
 }
 

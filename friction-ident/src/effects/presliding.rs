@@ -1,33 +1,77 @@
 //! Pre-sliding: the contact is a spring up to the friction level, then it slides.
 
-use super::{About, Effect, Element, Parameter, Parameters, Response, Slot, Step};
+mod bristle;
+mod maxwell;
+
+use super::{About, Balance, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step};
 use crate::axis::Quantity;
+use crate::simd::{limited, vectorised};
 
 /// `clip(k_t z, +-level)`: linear elastic, ideally plastic (Jenkins element).
 ///
-/// The state is the contact force itself, so that the level may change while the contact is loaded.
+/// The first state is the contact force itself, so that the level may change while the contact is
+/// loaded; the second is 1 while it slides.
 #[derive(Clone, Copy, Debug)]
-pub struct Presliding;
+pub struct Presliding {
+    breakaway: Breakaway,
+}
+
+/// Up to which level the contact holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Breakaway {
+    /// The level at the velocity of the mass: the force is continuous.
+    Kinetic,
+    /// The level at rest; the force falls when the contact breaks.
+    Static,
+}
+
+/// The default form.
+pub static PRESLIDING: Presliding = Presliding { breakaway: Breakaway::Kinetic };
+static STATIC: Presliding = Presliding { breakaway: Breakaway::Static };
+static FORMS: [&dyn Effect; 4] = [&STATIC, &bristle::DAHL, &bristle::LUGRE, &maxwell::MaxwellSlip];
+
+const STIFFNESS: Parameter = Parameter::shape(
+    "k_t",
+    "tangential stiffness of the contact",
+    Quantity::Stiffness,
+    (1e4, 1e9),
+    5e6,
+);
+const SHOWS: &str =
+    "residual against displacement since the last reversal, the same at every speed";
 
 static ABOUT: About = About {
     name: "presliding",
     title: "pre-sliding displacement",
     equation: "k_t z instead of level s, |k_t z| <= level, z' = v below",
-    parameters: &[Parameter::shape(
-        "k_t",
-        "tangential stiffness of the contact",
-        Quantity::Stiffness,
-        (1e4, 1e9),
-        5e6,
-    )],
+    parameters: &[STIFFNESS],
     slots: &[Slot::Contact],
-    shows: "residual against displacement since the last reversal, the same at every speed",
+    shows: SHOWS,
     reference: "P. R. Dahl, AIAA J. 14, 1976; K. L. Johnson, Contact Mechanics, 1987",
+};
+static STATIC_ABOUT: About = About {
+    name: "presliding:static",
+    title: "pre-sliding displacement, breaking at the level at rest",
+    equation: "k_t z up to level(v = 0), then level(v) s until the motion reverses",
+    parameters: &[STIFFNESS],
+    slots: &[Slot::Contact],
+    shows: SHOWS,
+    reference: "B. Armstrong-Helouvry et al., Automatica 30, 1994 (seven-parameter model)",
 };
 
 impl Effect for Presliding {
     fn about(&self) -> &'static About {
-        &ABOUT
+        match self.breakaway {
+            Breakaway::Kinetic => &ABOUT,
+            Breakaway::Static => &STATIC_ABOUT,
+        }
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        match self.breakaway {
+            Breakaway::Kinetic => &FORMS,
+            Breakaway::Static => &[],
+        }
     }
 
     fn element(&self) -> Option<&dyn Element> {
@@ -35,74 +79,194 @@ impl Effect for Presliding {
     }
 }
 
+impl Presliding {
+    /// The level up to which the contact holds.
+    fn hold<'a>(self, level: &'a [f64], breakaway: &'a [f64]) -> &'a [f64] {
+        match self.breakaway {
+            Breakaway::Kinetic => level,
+            Breakaway::Static => breakaway,
+        }
+    }
+}
+
 impl Element for Presliding {
     fn states(&self) -> usize {
-        1
+        2
     }
 
-    fn start(&self, _p: &[f64], level: f64, direction: f64, state: &mut [f64]) {
-        state[0] = level * direction;
-    }
-
-    fn force(&self, _p: Parameters<'_>, step: &Step<'_>, state: &[f64], force: &mut [f64]) {
-        // A level that fell since the last step takes the loaded contact down with it.
-        for ((force, state), level) in force.iter_mut().zip(state).zip(step.level) {
-            *force += state.max(-level).min(*level);
-        }
+    fn start(&self, _p: &[f64], at: &Onset, state: &mut [f64]) {
+        state[0] = at.level * at.used;
+        state[1] = if at.used.abs() < 1.0 { 0.0 } else { 1.0 };
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        let lanes = out.force.len();
-        let (stiffness, state) = (&p.get(0)[..lanes], &state[..lanes]);
-        let (moved, level) = (&step.displacement[..lanes], &step.level[..lanes]);
-        let (force, slope) = (&mut out.force[..lanes], &mut out.stiffness[..lanes]);
-        for i in 0..lanes {
-            let held = state[i].max(-level[i]).min(level[i]);
-            let trial = held + stiffness[i] * moved[i];
-            let inside = trial.abs() <= level[i];
-            force[i] += trial.max(-level[i]).min(level[i]);
-            slope[i] += if inside { stiffness[i] } else { 0.0 };
-        }
+        let hold = self.hold(step.level, step.breakaway);
+        let (held, slides) = state.split_at(step.level.len());
+        let (force, slope) = (&mut *out.force, &mut *out.stiffness);
+        respond(p.get(0), step.displacement, step.level, hold, held, slides, force, slope);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
-        let lanes = state.len();
-        let stiffness = &p.get(0)[..lanes];
-        let (moved, level) = (&step.displacement[..lanes], &step.level[..lanes]);
-        for i in 0..lanes {
-            let held = state[i].max(-level[i]).min(level[i]);
-            state[i] = (held + stiffness[i] * moved[i]).max(-level[i]).min(level[i]);
-        }
+        let hold = self.hold(step.level, step.breakaway);
+        let (held, slides) = state.split_at_mut(step.level.len());
+        commit(p.get(0), step.displacement, step.level, hold, held, slides);
     }
 
     fn iterations(&self) -> usize {
-        // The response is piecewise linear with one kink on either side: the elastic trial is
-        // exact if it stays inside, else the sliding step is.
-        2
+        // The response is piecewise linear: the elastic trial is exact if it holds, else the
+        // sliding step is.
+        1
+    }
+
+    fn solve(
+        &self,
+        p: Parameters<'_>,
+        b: &Balance<'_>,
+        state: &mut [f64],
+        velocity: &mut [f64],
+    ) -> bool {
+        let hold = self.hold(b.level, b.breakaway);
+        let (held, slides) = state.split_at_mut(b.level.len());
+        solve(p.get(0), b.duration, b.inertia, b.push, b.level, hold, held, slides, velocity);
+        true
+    }
+
+    fn needs_breakaway(&self) -> bool {
+        self.breakaway == Breakaway::Static
+    }
+
+    fn force(&self, _p: &[f64], state: &[f64]) -> Option<f64> {
+        Some(state[0])
+    }
+}
+
+/// What the contact holds at the start: a level that fell takes a loaded contact down with it.
+#[inline]
+fn at_start(held: f64, slides: f64, level: f64, hold: f64) -> f64 {
+    let cap = if slides > 0.0 { level } else { hold.max(level) };
+    limited(held, cap)
+}
+
+/// Contact force at the end of a step that is elastic at first, and whether it slides then.
+#[inline]
+fn at_end(start: f64, trial: f64, slides: f64, level: f64, hold: f64) -> (f64, bool) {
+    // Once it slides it goes on sliding until the force turns back.
+    let goes_on = slides > 0.0 && trial * start >= start * start;
+    let cap = if goes_on { level } else { hold.max(level) };
+    let breaks = trial.abs() > cap;
+    (if breaks { level.copysign(trial) } else { trial }, breaks || goes_on && trial.abs() >= level)
+}
+
+vectorised! {
+    fn respond(
+        stiffness: &[f64],
+        moved: &[f64],
+        level: &[f64],
+        hold: &[f64],
+        held: &[f64],
+        slides: &[f64],
+        force: &mut [f64],
+        slope: &mut [f64],
+    ) {
+        let n = force.len();
+        let (stiffness, moved, level) = (&stiffness[..n], &moved[..n], &level[..n]);
+        let (hold, held, slides) = (&hold[..n], &held[..n], &slides[..n]);
+        let slope = &mut slope[..n];
+        for i in 0..n {
+            let start = at_start(held[i], slides[i], level[i], hold[i]);
+            let trial = start + stiffness[i] * moved[i];
+            let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
+            force[i] += 0.5 * (start + end);
+            slope[i] += if breaks && moved[i] != 0.0 { 0.0 } else { 0.5 * stiffness[i] };
+        }
+    }
+
+    fn commit(
+        stiffness: &[f64],
+        moved: &[f64],
+        level: &[f64],
+        hold: &[f64],
+        held: &mut [f64],
+        slides: &mut [f64],
+    ) {
+        let n = held.len();
+        let (stiffness, moved, level) = (&stiffness[..n], &moved[..n], &level[..n]);
+        let (hold, slides) = (&hold[..n], &mut slides[..n]);
+        for i in 0..n {
+            let start = at_start(held[i], slides[i], level[i], hold[i]);
+            let trial = start + stiffness[i] * moved[i];
+            let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
+            held[i] = end;
+            slides[i] = if breaks { 1.0 } else { 0.0 };
+        }
+    }
+
+    fn solve(
+        stiffness: &[f64],
+        duration: &[f64],
+        inertia: &[f64],
+        push: &[f64],
+        level: &[f64],
+        hold: &[f64],
+        held: &mut [f64],
+        slides: &mut [f64],
+        velocity: &mut [f64],
+    ) {
+        let n = held.len();
+        let (stiffness, duration, inertia) = (&stiffness[..n], &duration[..n], &inertia[..n]);
+        let (push, level, hold) = (&push[..n], &level[..n], &hold[..n]);
+        let (slides, velocity) = (&mut slides[..n], &mut velocity[..n]);
+        for i in 0..n {
+            let r = duration[i];
+            let start = at_start(held[i], slides[i], level[i], hold[i]);
+            let elastic = (push[i] - r * start) / (inertia[i] + 0.5 * stiffness[i] * r * r);
+            let trial = start + stiffness[i] * r * elastic;
+            let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
+            let sliding = (push[i] - 0.5 * r * (start + end)) / inertia[i];
+            held[i] = end;
+            slides[i] = if breaks { 1.0 } else { 0.0 };
+            velocity[i] = if breaks { sliding } else { elastic };
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::element::Leg;
     use super::*;
 
-    /// Contact force along a path of displacements.
-    fn walk(path: &[f64], level: f64, stiffness: f64) -> Vec<f64> {
-        let (mut state, p) = ([0.0], [stiffness]);
-        let p = Parameters::new(&p, 1);
-        path.iter()
-            .map(|moved| {
-                let step = Step { duration: &[1e-3], displacement: &[*moved], level: &[level] };
-                Presliding.commit(p, &step, &mut state);
-                state[0]
-            })
-            .collect()
+    /// Contact force along a path of displacements, from rest.
+    pub(super) fn walk(contact: &dyn Element, p: &[f64], path: &[f64], level: f64) -> Vec<f64> {
+        walk_to(contact, p, path, level, level)
+    }
+
+    fn walk_to(
+        contact: &dyn Element,
+        p: &[f64],
+        path: &[f64],
+        level: f64,
+        breakaway: f64,
+    ) -> Vec<f64> {
+        let mut state = vec![0.0; contact.states()];
+        contact.start(p, &Onset { level, used: 0.0, velocity: 0.0 }, &mut state);
+        let leg = |moved: &f64| Leg { duration: 1e-3, displacement: *moved, level, breakaway };
+        let legs: Vec<Leg> = path.iter().map(leg).collect();
+        let mut force = vec![0.0; path.len()];
+        contact.along(p, &legs, &mut state, &mut force);
+        force
     }
 
     #[test]
     fn it_is_a_spring_up_to_the_level_and_slides_beyond() {
-        let force = walk(&[1e-6, 1e-6, 1e-6, -1e-6], 5.0, 2e6);
+        let force = walk(&PRESLIDING, &[2e6], &[1e-6, 1e-6, 1e-6, -1e-6], 5.0);
         assert_eq!(force, [2.0, 4.0, 5.0, 3.0]);
+    }
+
+    #[test]
+    fn the_static_form_holds_up_to_the_level_at_rest_and_falls_to_the_level_of_sliding() {
+        let path = [1e-6, 1e-6, 1e-6, 1e-6, 1e-6, 1e-6, -1e-6, 1e-6];
+        let force = walk_to(&STATIC, &[2e6], &path, 5.0, 9.0);
+        assert_eq!(force, [2.0, 4.0, 6.0, 8.0, 5.0, 5.0, 3.0, 5.0]);
     }
 
     #[test]
@@ -113,10 +277,44 @@ mod tests {
         let mut path = vec![step; steps as usize];
         path.extend(vec![-step; steps as usize]);
         let twice: Vec<f64> = path.iter().chain(&path).copied().collect();
-        let force = walk(&twice, level, stiffness);
+        let force = walk(&PRESLIDING, &[stiffness], &twice, level);
         let area: f64 =
             force.iter().zip(&twice).skip(path.len()).map(|(force, moved)| force * moved).sum();
         let exact = 4.0 * level * (amplitude - level / stiffness);
         assert!((area / exact - 1.0).abs() < 1e-3, "{area} against {exact}");
+    }
+
+    #[test]
+    fn the_closed_form_solves_the_balance_that_the_response_states() {
+        for contact in [&PRESLIDING, &STATIC] {
+            for (k, push) in [-40.0, -3.0, -0.1, 0.0, 0.02, 1.0, 7.0, 300.0].into_iter().enumerate()
+            {
+                let (held, slides) = ([4.0, -4.0, 5.0][k % 3], [0.0, 0.0, 1.0][k % 3]);
+                let (inertia, r, level, breakaway) = (60.0, 1e-3, 5.0, 7.0);
+                let (mut state, mut velocity) = ([held, slides], [0.0]);
+                let balance = Balance {
+                    duration: &[r],
+                    inertia: &[inertia],
+                    push: &[push * r],
+                    level: &[level],
+                    breakaway: &[breakaway],
+                };
+                let stiffness = [2e6];
+                let p = Parameters::new(&stiffness, 1);
+                assert!(contact.solve(p, &balance, &mut state, &mut velocity));
+                let step = Step {
+                    duration: &[r],
+                    displacement: &[r * velocity[0]],
+                    level: &[level],
+                    breakaway: &[breakaway],
+                };
+                let (mut force, mut stiffness) = ([0.0], [0.0]);
+                let mut out = Response { force: &mut force, stiffness: &mut stiffness };
+                contact.respond(p, &step, &[held, slides], &mut out);
+                let left = inertia * velocity[0] + r * force[0] - push * r;
+                // The static form's response jumps where the contact breaks.
+                assert!(left.abs() < 1e-12 || contact.needs_breakaway(), "{push}: {left}");
+            }
+        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::vectorised;
 
 /// `k (x - x_0)`.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +31,15 @@ impl Effect for Spring {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let (stiffness, zero) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
-        let (position, force) = (&m.position[..lanes], &mut out.force[..lanes]);
-        for i in 0..lanes {
+        stretch(p.get(0), p.get(1), m.position, out.force);
+    }
+}
+
+vectorised! {
+    fn stretch(stiffness: &[f64], zero: &[f64], position: &[f64], force: &mut [f64]) {
+        let n = force.len();
+        let (stiffness, zero, position) = (&stiffness[..n], &zero[..n], &position[..n]);
+        for i in 0..n {
             force[i] += stiffness[i] * (position[i] - zero[i]);
         }
     }

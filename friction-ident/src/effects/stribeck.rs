@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
+use crate::simd::vectorised;
 
 /// The shape of the hump over speed, 1 at rest and 0 at high speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,23 +83,46 @@ impl Effect for Stribeck {
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
         match self.0 {
-            Form::Rational => hump(p, m, level, |_, u| 1.0 / (1.0 + u * u)),
-            Form::Gaussian => hump(p, m, level, |_, u| (-u * u).exp()),
-            Form::Exponential => {
-                let delta = p.get(2);
-                hump(p, m, level, |i, u| (-u.abs().powf(delta[i])).exp());
+            Form::Rational => rational(p.get(0), p.get(1), m.level_velocity, m.bond, level),
+            form => {
+                for (i, level) in level.iter_mut().enumerate() {
+                    let share = form.share(p, m.level_velocity, i);
+                    *level += p.get(0)[i] * m.bond[i] * share;
+                }
             }
+        }
+    }
+
+    fn hump(&self, p: Parameters<'_>, level_velocity: &[f64], share: &mut [f64]) -> bool {
+        for (i, share) in share.iter_mut().enumerate() {
+            *share = self.0.share(p, level_velocity, i);
+        }
+        true
+    }
+}
+
+impl Form {
+    /// Share of the hump that is left in lane `i`.
+    fn share(self, p: Parameters<'_>, velocity: &[f64], i: usize) -> f64 {
+        let u = velocity[i] / p.get(1)[i];
+        match self {
+            Self::Rational => 1.0 / (1.0 + u * u),
+            Self::Gaussian => (-u * u).exp(),
+            Self::Exponential => (-u.abs().powf(p.get(2)[i])).exp(),
         }
     }
 }
 
-#[inline]
-fn hump(p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64], shape: impl Fn(usize, f64) -> f64) {
-    let lanes = level.len();
-    let (height, speed) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
-    let (velocity, bond) = (&m.level_velocity[..lanes], &m.bond[..lanes]);
-    for i in 0..lanes {
-        level[i] += height[i] * bond[i] * shape(i, velocity[i] / speed[i]);
+vectorised! {
+    fn rational(height: &[f64], speed: &[f64], velocity: &[f64], bond: &[f64], level: &mut [f64]) {
+        let n = level.len();
+        let (height, speed) = (&height[..n], &speed[..n]);
+        let (velocity, bond) = (&velocity[..n], &bond[..n]);
+        for i in 0..n {
+            // 1 / (1 + (v/v_s)^2) with one division.
+            let square = speed[i] * speed[i];
+            level[i] += height[i] * bond[i] * square / (square + velocity[i] * velocity[i]);
+        }
     }
 }
 

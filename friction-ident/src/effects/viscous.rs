@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::vectorised;
 
 /// `F_v v`.
 #[derive(Clone, Copy, Debug)]
@@ -23,10 +24,15 @@ impl Effect for Viscous {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let (damping, velocity) = (&p.get(0)[..lanes], &m.velocity[..lanes]);
-        let (force, slope) = (&mut out.force[..lanes], &mut out.damping[..lanes]);
-        for i in 0..lanes {
+        damp(p.get(0), m.velocity, out.force, out.damping);
+    }
+}
+
+vectorised! {
+    fn damp(damping: &[f64], velocity: &[f64], force: &mut [f64], slope: &mut [f64]) {
+        let n = force.len();
+        let (damping, velocity, slope) = (&damping[..n], &velocity[..n], &mut slope[..n]);
+        for i in 0..n {
             force[i] += damping[i] * velocity[i];
             slope[i] += damping[i];
         }

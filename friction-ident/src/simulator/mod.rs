@@ -16,9 +16,11 @@
 //! * With a pre-sliding contact the friction force is continuous and there is no event to locate.
 
 mod error;
+mod hooks;
 mod plants;
 mod run;
 mod scratch;
+mod step;
 
 pub use error::SimulationError;
 pub use plants::{Plants, Start};

@@ -1,0 +1,92 @@
+//! Backlash: after a reversal the drive crosses a gap before it moves the load again.
+
+use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
+use crate::axis::Quantity;
+use crate::simd::sign;
+
+/// The load's share `F_L` of the friction is missing while the drive is inside the gap `b`.
+///
+/// Without the load's inertia: the impact at the end of the gap is not part of the law.
+#[derive(Clone, Copy, Debug)]
+pub struct Backlash;
+
+static ABOUT: About = About {
+    name: "backlash",
+    title: "backlash",
+    equation: "-F_L s while the drive is inside the gap, over the distance b after each reversal",
+    parameters: &[
+        Parameter::level("F_L", "friction of the load behind the gap", Quantity::Force, 200.0, 4.0),
+        Parameter::shape("b", "width of the gap", Quantity::Length, (1e-6, 1e-2), 2e-5),
+    ],
+    slots: &[Slot::Memory],
+    shows: "after a reversal the force drops to the inner part over the distance b, at every speed",
+    reference: "M. Nordin, P.-O. Gutman, Automatica 38, 2002",
+};
+
+impl Effect for Backlash {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn memory(&self) -> Option<&dyn Memory> {
+        Some(self)
+    }
+}
+
+/// State: place of the drive in the gap, -1/2..1/2 of its width.
+impl Memory for Backlash {
+    fn states(&self) -> usize {
+        1
+    }
+
+    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
+        state[0] = 0.5 * sign(velocity);
+    }
+
+    fn recall(
+        &self,
+        p: Parameters<'_>,
+        m: &Motion<'_>,
+        _past: &Past,
+        state: &[f64],
+        out: &mut Recalled<'_>,
+    ) {
+        for (i, level) in out.level.iter_mut().enumerate() {
+            // At the side towards which it moves, or is pushed, it takes the load with it.
+            let towards =
+                if m.direction[i] == 0.0 { sign(m.drive_force[i]) } else { m.direction[i] };
+            let inside = state[i] * towards < 0.5;
+            *level -= if inside { p.get(0)[i] } else { 0.0 };
+        }
+    }
+
+    fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
+        for (i, state) in state.iter_mut().enumerate() {
+            *state = (*state + taken.displacement[i] / p.get(1)[i]).clamp(-0.5, 0.5);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::axis::Axis;
+    use crate::driven::{MeasuredMotion, force_along};
+    use crate::model::Model;
+
+    #[test]
+    fn the_force_drops_over_the_gap_after_a_reversal_and_nowhere_else() {
+        let model = Model::new(Axis::Linear, 1.0)
+            .and_then(|m| m.with("coulomb", &[("F_C", 10.0)]))
+            .and_then(|m| m.with("backlash", &[("F_L", 4.0), ("b", 1e-3)]))
+            .unwrap();
+        let time: Vec<f64> = (0..400).map(|k| f64::from(k) * 1e-3).collect();
+        let forth = |k: usize| if k < 200 { k } else { 400 - k };
+        let x: Vec<f64> = (0..400).map(|k| forth(k) as f64 * 1e-4).collect();
+        let v: Vec<f64> = (0..400).map(|k| if k <= 200 { 0.1 } else { -0.1 }).collect();
+        let none = vec![0.0; 400];
+        let force = force_along(&model, &MeasuredMotion::new(&time, &x, &v, &none).unwrap());
+        assert!(force[..=200].iter().all(|f| *f == 10.0));
+        assert!(force[201..209].iter().all(|f| *f == -6.0));
+        assert!(force[211..].iter().all(|f| *f == -10.0));
+    }
+}

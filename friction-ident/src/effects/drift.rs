@@ -1,0 +1,75 @@
+//! Drift: friction relaxes with time while the machine warms up.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::axis::Quantity;
+
+/// `(dF_C + dF_v |v|) exp(-t/tau) s`: what is there at the start beyond the final friction.
+#[derive(Clone, Copy, Debug)]
+pub struct Drift;
+
+static ABOUT: About = About {
+    name: "drift",
+    title: "warm-up drift",
+    equation: "(dF_C + dF_v |v|) exp(-t/tau) s",
+    parameters: &[
+        Parameter::signed(
+            "dF_C",
+            "friction level at the start beyond the final one",
+            Quantity::Force,
+            100.0,
+            1.0,
+        ),
+        Parameter::signed(
+            "dF_v",
+            "damping at the start beyond the final one",
+            Quantity::Damping,
+            1000.0,
+            30.0,
+        ),
+        Parameter::shape("tau", "time constant", Quantity::Time, (1.0, 1e4), 100.0),
+    ],
+    slots: &[Slot::FrictionLevel, Slot::SmoothForce],
+    shows: "block means of the residual drift with time",
+    reference: "L. Simoni et al., IFAC PapersOnLine 50, 2017 (temperature in friction models)",
+};
+
+impl Effect for Drift {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
+        for (i, level) in level.iter_mut().enumerate() {
+            *level += p.get(0)[i] * left(p, m, i);
+        }
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        for i in 0..out.force.len() {
+            let damping = p.get(1)[i] * left(p, m, i);
+            out.force[i] += damping * m.velocity[i];
+            out.damping[i] += damping;
+        }
+    }
+}
+
+/// What is left of the start in lane `i`.
+fn left(p: Parameters<'_>, m: &Motion<'_>, i: usize) -> f64 {
+    (-m.time[i] / p.get(2)[i]).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, level, smooth};
+    use super::*;
+
+    #[test]
+    fn both_parts_relax_with_the_time_constant() {
+        let p = [2.0, 30.0, 50.0];
+        let point = Point { time: 50.0, ..Point::at(0.0, 0.1) };
+        let left = (-1.0f64).exp();
+        assert!((level(&Drift, &p, point) - 2.0 * left).abs() < 1e-12);
+        assert!((smooth(&Drift, &p, point).0 - 3.0 * left).abs() < 1e-12);
+        assert_eq!(level(&Drift, &p, Point::at(0.0, -0.1)), 2.0);
+    }
+}

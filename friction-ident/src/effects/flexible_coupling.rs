@@ -1,0 +1,149 @@
+//! A flexible coupling: part of the mass hangs behind a spring and a damper.
+
+use std::f64::consts::TAU;
+
+use super::{About, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step};
+use crate::axis::Quantity;
+
+/// A second mass `m_L` on spring and damper; the model's own mass is the one in front.
+#[derive(Clone, Copy, Debug)]
+pub struct FlexibleCoupling;
+
+static ABOUT: About = About {
+    name: "flexible-coupling",
+    title: "load behind a flexible coupling",
+    equation: "m_L x_L'' = k (x - x_L) + d (x' - x_L') acts back on the mass, k = m_L (2 pi f)^2, d = 2 zeta m_L 2 pi f",
+    parameters: &[
+        Parameter::shape("m_L", "mass behind the coupling", Quantity::Mass, (1e-3, 1e3), 10.0),
+        Parameter::shape(
+            "f",
+            "its frequency with the drive blocked",
+            Quantity::Frequency,
+            (1.0, 500.0),
+            50.0,
+        ),
+        Parameter::shape("zeta", "its damping ratio", Quantity::One, (1e-3, 2.0), 0.05),
+    ],
+    slots: &[Slot::Attached],
+    shows: "ringing of the residual after edges of the acceleration",
+    reference: "W. Leonhard, Control of Electrical Drives, Springer (two-mass system)",
+};
+
+impl Effect for FlexibleCoupling {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn element(&self) -> Option<&dyn Element> {
+        Some(self)
+    }
+}
+
+/// Trapezoidal rule for the load over a step in which the mass moves by `moved`. The load's mean
+/// velocity `u` follows from `2 m_L (u - v_L) / r = -k (e + (r u - moved) / 2) - d (u - moved / r)`.
+struct Swing {
+    /// Mean force on the mass, and its slope against `moved`.
+    force: f64,
+    slope: f64,
+    /// Mean velocity of the load.
+    mean: f64,
+}
+
+fn swing(p: Parameters<'_>, i: usize, r: f64, moved: f64, stretch: f64, velocity: f64) -> Swing {
+    let (load, w, zeta) = (p.get(0)[i], TAU * p.get(1)[i], p.get(2)[i]);
+    let (stiffness, damping) = (load * w * w, 2.0 * zeta * load * w);
+    if r <= 0.0 {
+        return Swing { force: -stiffness * stretch, slope: 0.0, mean: velocity };
+    }
+    let inertia = 2.0 * load / r + 0.5 * stiffness * r + damping;
+    let coupling = 0.5 * stiffness + damping / r;
+    let mean = (2.0 * load * velocity / r - stiffness * stretch + coupling * moved) / inertia;
+    // What accelerates the load is missing at the mass.
+    let force = 2.0 * load * (mean - velocity) / r;
+    Swing { force, slope: 2.0 * load * coupling / (r * inertia), mean }
+}
+
+/// States: stretch `x_L - x` and velocity of the load.
+impl Element for FlexibleCoupling {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn start(&self, _p: &[f64], at: &Onset, state: &mut [f64]) {
+        state.copy_from_slice(&[0.0, at.velocity]);
+    }
+
+    fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
+        let lanes = out.force.len();
+        for i in 0..lanes {
+            let (r, moved) = (step.duration[i], step.displacement[i]);
+            let swing = swing(p, i, r, moved, state[i], state[lanes + i]);
+            out.force[i] += swing.force;
+            out.stiffness[i] += swing.slope;
+        }
+    }
+
+    fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
+        let lanes = step.duration.len();
+        for i in 0..lanes {
+            let (r, moved) = (step.duration[i], step.displacement[i]);
+            let swing = swing(p, i, r, moved, state[i], state[lanes + i]);
+            state[i] += r * swing.mean - moved;
+            state[lanes + i] += 2.0 * (swing.mean - state[lanes + i]);
+        }
+    }
+
+    fn iterations(&self) -> usize {
+        // Linear.
+        1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Axis;
+    use crate::driven::{MeasuredMotion, force_along};
+    use crate::model::Model;
+    use crate::simulator::{Input, Start, simulate};
+    use missing_physics::Hold;
+
+    fn model(zeta: f64) -> Model {
+        Model::new(Axis::Linear, 3.0)
+            .and_then(|m| m.with("flexible-coupling", &[("m_L", 1.0), ("f", 20.0), ("zeta", zeta)]))
+            .unwrap()
+    }
+
+    #[test]
+    fn both_masses_together_gain_the_impulse_and_ring_at_the_resonance() {
+        let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 2.5e-4).collect();
+        let force = vec![4.0; 2000];
+        let input = Input::new(&time, &force, Hold::ZeroOrder).with_max_step(1e-4);
+        let out = simulate(&model(1e-3), &input, &Start::default()).unwrap();
+        // v = a t + ringing at w sqrt(1 + m_L / m); amplitude F / m / W * m_L / (m + m_L).
+        let w = TAU * 20.0 * (1.0f64 + 1.0 / 3.0).sqrt();
+        for (v, t) in out.velocity.iter().zip(&time) {
+            let ring = (4.0 / 3.0 - 1.0) / w * (w * t).sin();
+            assert!((v - t - ring).abs() < 2e-4, "{t}: {v}");
+        }
+    }
+
+    #[test]
+    fn along_a_motion_it_asks_for_what_swings_behind() {
+        let w = TAU * 3.0;
+        let time: Vec<f64> = (0..4000).map(|k| f64::from(k) * 1e-3).collect();
+        let x: Vec<f64> = time.iter().map(|t| 0.01 * (1.0 - (w * t).cos())).collect();
+        let v: Vec<f64> = time.iter().map(|t| 0.01 * w * (w * t).sin()).collect();
+        let a: Vec<f64> = time.iter().map(|t| 0.01 * w * w * (w * t).cos()).collect();
+        let force = force_along(&model(0.3), &MeasuredMotion::new(&time, &x, &v, &a).unwrap());
+        // Far below the coupling's frequency the load weighs m_L / (1 - (3/20)^2), nearly in phase.
+        let (mut sum, mut square) = (0.0, 0.0);
+        for k in 1000..3990 {
+            sum += force[k] * a[k];
+            square += a[k] * a[k];
+        }
+        let ratio: f64 = 3.0 / 20.0;
+        let apparent = 3.0 + 1.0 / (1.0 - ratio * ratio);
+        assert!((sum / square - apparent).abs() < 0.01, "{} {apparent}", sum / square);
+    }
+}

@@ -1,0 +1,159 @@
+//! Frictional memory: the friction follows the velocity with a delay.
+
+use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
+use crate::axis::Quantity;
+
+/// The level sees `v(t - tau_L)` instead of `v(t)`.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionalMemory;
+
+/// The level sees `v` through a first-order lag.
+#[derive(Clone, Copy, Debug)]
+struct Lagged;
+
+const TIME: Parameter =
+    Parameter::shape("tau_L", "delay of the friction", Quantity::Time, (1e-4, 0.2), 0.01);
+const SHOWS: &str = "a loop in the residual against velocity that widens with |dv/dt|; not separable \
+                     from stribeck at constant speed";
+
+static ABOUT: About = About {
+    name: "frictional-memory",
+    title: "frictional memory",
+    equation: "the friction level follows v(t - tau_L)",
+    parameters: &[TIME],
+    slots: &[Slot::Memory],
+    shows: SHOWS,
+    reference: "D. P. Hess, A. Soom, J. Tribology 112, 1990",
+};
+static LAGGED_ABOUT: About = About {
+    name: "frictional-memory:lag",
+    title: "frictional memory, first order",
+    equation: "the friction level follows w with tau_L w' + w = v",
+    parameters: &[TIME],
+    slots: &[Slot::Memory],
+    shows: SHOWS,
+    reference: "A. Ruina, J. Geophysical Research 88, 1983 (state-variable friction)",
+};
+static LAGGED: Lagged = Lagged;
+static FORMS: [&dyn Effect; 1] = [&LAGGED];
+
+impl Effect for FrictionalMemory {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
+    fn memory(&self) -> Option<&dyn Memory> {
+        Some(self)
+    }
+}
+
+impl Memory for FrictionalMemory {
+    fn memory(&self, p: Parameters<'_>) -> f64 {
+        p.get(0).iter().fold(0.0, |longest, delay| delay.max(longest))
+    }
+
+    fn recall(
+        &self,
+        p: Parameters<'_>,
+        m: &Motion<'_>,
+        past: &Past,
+        _state: &[f64],
+        out: &mut Recalled<'_>,
+    ) {
+        for (i, seen) in out.level_velocity.iter_mut().enumerate() {
+            let then = m.time[i] - p.get(0)[i];
+            let (newest, last) = past.newest(i);
+            *seen = if then > newest {
+                // Within the step that is being taken.
+                let share = (then - newest) / (m.time[i] - newest);
+                last + share * (m.velocity[i] - last)
+            } else {
+                past.at(i, then)
+            };
+        }
+    }
+}
+
+impl Effect for Lagged {
+    fn about(&self) -> &'static About {
+        &LAGGED_ABOUT
+    }
+
+    fn memory(&self) -> Option<&dyn Memory> {
+        Some(self)
+    }
+}
+
+impl Memory for Lagged {
+    fn states(&self) -> usize {
+        1
+    }
+
+    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
+        state[0] = velocity;
+    }
+
+    fn recall(
+        &self,
+        _p: Parameters<'_>,
+        _m: &Motion<'_>,
+        _past: &Past,
+        state: &[f64],
+        out: &mut Recalled<'_>,
+    ) {
+        out.level_velocity.copy_from_slice(state);
+    }
+
+    fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
+        for (i, state) in state.iter_mut().enumerate().filter(|(i, _)| taken.duration[*i] > 0.0) {
+            // Exact for the mean velocity of the piece.
+            let mean = taken.displacement[i] / taken.duration[i];
+            *state = mean + (*state - mean) * (-taken.duration[i] / p.get(0)[i]).exp();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::axis::Axis;
+    use crate::driven::{MeasuredMotion, force_along};
+    use crate::model::Model;
+
+    /// Friction along a velocity ramp of 0.1 m/s^2 from rest, Stribeck hump of 4 N at 5 mm/s.
+    fn ramp(memory: &str) -> Vec<f64> {
+        let model = Model::new(Axis::Linear, 1.0)
+            .and_then(|m| m.with("stribeck", &[("dF", 4.0), ("v_s", 5e-3)]))
+            .and_then(|m| m.with(memory, &[("tau_L", 0.02)]))
+            .unwrap();
+        let time: Vec<f64> = (0..300).map(|k| f64::from(k) * 1e-3).collect();
+        let velocity: Vec<f64> = time.iter().map(|t| 0.1 * t).collect();
+        let position: Vec<f64> = time.iter().map(|t| 0.05 * t * t).collect();
+        let none = vec![0.0; 300];
+        force_along(&model, &MeasuredMotion::new(&time, &position, &velocity, &none).unwrap())
+    }
+
+    fn hump(v: f64) -> f64 {
+        4.0 / (1.0 + (v / 5e-3).powi(2))
+    }
+
+    #[test]
+    fn the_hump_is_that_of_the_velocity_a_delay_ago() {
+        for (k, force) in ramp("frictional-memory").iter().enumerate().skip(1) {
+            let then = (0.1 * (k as f64 * 1e-3 - 0.02)).max(0.0);
+            assert!((force - hump(then)).abs() < 1e-9, "sample {k}: {force}");
+        }
+    }
+
+    #[test]
+    fn the_first_order_form_follows_a_ramp_with_the_same_delay_in_the_end() {
+        for (k, force) in ramp("frictional-memory:lag").iter().enumerate().skip(1) {
+            let t = k as f64 * 1e-3;
+            let seen = 0.1 * (t - 0.02 * (1.0 - (-t / 0.02).exp()));
+            assert!((force - hump(seen)).abs() < 5e-3, "sample {k}: {force} {}", hump(seen));
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Memory: what the friction level knows of the past.
+
+use super::{Motion, Parameters, Past};
+
+/// Shapes what the friction level sees, from a state of its own.
+pub trait Memory: Sync + Send {
+    /// State variables per lane.
+    fn states(&self) -> usize {
+        0
+    }
+
+    /// State of one lane that starts with `velocity`.
+    fn start(&self, _p: &[f64], _velocity: f64, _state: &mut [f64]) {}
+
+    /// Longest time, s, over which it must know the velocity.
+    fn memory(&self, _p: Parameters<'_>) -> f64 {
+        0.0
+    }
+
+    /// What the level sees at `m`; `past` is the velocity so far.
+    fn recall(
+        &self,
+        p: Parameters<'_>,
+        m: &Motion<'_>,
+        past: &Past,
+        state: &[f64],
+        out: &mut Recalled<'_>,
+    );
+
+    /// Takes a piece of motion into the state.
+    fn remember(&self, _p: Parameters<'_>, _taken: &Taken<'_>, _state: &mut [f64]) {}
+}
+
+/// What a [`Memory`] may change.
+#[derive(Debug)]
+pub struct Recalled<'a> {
+    /// The velocity that the friction level follows.
+    pub level_velocity: &'a mut [f64],
+    /// How much of the static hump has formed, 0..1.
+    pub bond: &'a mut [f64],
+    /// To be added to: friction level, N or N m.
+    pub level: &'a mut [f64],
+}
+
+/// A piece of motion as a [`Memory`] sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Taken<'a> {
+    /// Length, s.
+    pub duration: &'a [f64],
+    /// Displacement, m or rad.
+    pub displacement: &'a [f64],
+    /// 1 where the lane slides at the end of the piece, 0 where it rests.
+    pub sliding: &'a [f64],
+    /// Time at rest so far, s; while sliding the length of the last rest.
+    pub dwell: &'a [f64],
+    /// Share of the static hump that the level velocity leaves, 0..1.
+    pub hump: &'a [f64],
+}

@@ -1,0 +1,126 @@
+//! Generalised Maxwell slip: springs in parallel that slip one after the other.
+
+use super::{
+    About, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS, STIFFNESS,
+    Slot, Step,
+};
+use crate::simd::limited;
+
+/// Number of elements.
+const ELEMENTS: usize = 4;
+
+/// Four Jenkins elements with a quarter of the level each; each breaks at `spread` times the
+/// displacement of the one before. `k_t` is the stiffness of all together before the first breaks.
+///
+/// Reversals inside reversals close their loops (nonlocal memory), which a single spring does not
+/// show.
+#[derive(Clone, Copy, Debug)]
+pub struct MaxwellSlip;
+
+static ABOUT: About = About {
+    name: "presliding:maxwell-slip",
+    title: "pre-sliding displacement, generalised Maxwell slip",
+    equation: "sum_{i=1..4} f_i instead of level s, f_i' = k_i v, |f_i| <= level/4, k_i ~ spread^-i, sum k_i = k_t",
+    parameters: &[
+        STIFFNESS,
+        Parameter::shape(
+            "spread",
+            "ratio of successive breakaway distances",
+            Quantity::One,
+            (1.1, 10.0),
+            2.5,
+        ),
+    ],
+    slots: &[Slot::Contact],
+    shows: SHOWS,
+    reference: "F. Al-Bender, V. Lampaert, J. Swevers, IEEE TAC 50, 2005",
+};
+
+impl Effect for MaxwellSlip {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn element(&self) -> Option<&dyn Element> {
+        Some(self)
+    }
+}
+
+/// Stiffnesses of the elements.
+fn stiffnesses(total: f64, spread: f64) -> [f64; ELEMENTS] {
+    let mut share = 1.0;
+    let shares = std::array::from_fn(|_| {
+        let now = share;
+        share /= spread;
+        now
+    });
+    let sum: f64 = shares.iter().sum();
+    shares.map(|share| total * share / sum)
+}
+
+impl Element for MaxwellSlip {
+    fn states(&self) -> usize {
+        ELEMENTS
+    }
+
+    fn start(&self, _p: &[f64], at: &Onset, state: &mut [f64]) {
+        state.fill(at.level * at.used / ELEMENTS as f64);
+    }
+
+    fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
+        let lanes = out.force.len();
+        for i in 0..lanes {
+            let cap = step.level[i] / ELEMENTS as f64;
+            for (e, stiffness) in stiffnesses(p.get(0)[i], p.get(1)[i]).into_iter().enumerate() {
+                let held = limited(state[e * lanes + i], cap);
+                let trial = held + stiffness * step.displacement[i];
+                out.force[i] += 0.5 * (held + limited(trial, cap));
+                out.stiffness[i] += if trial.abs() <= cap { 0.5 * stiffness } else { 0.0 };
+            }
+        }
+    }
+
+    fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
+        let lanes = step.level.len();
+        for i in 0..lanes {
+            let cap = step.level[i] / ELEMENTS as f64;
+            for (e, stiffness) in stiffnesses(p.get(0)[i], p.get(1)[i]).into_iter().enumerate() {
+                let held = limited(state[e * lanes + i], cap);
+                state[e * lanes + i] = limited(held + stiffness * step.displacement[i], cap);
+            }
+        }
+    }
+
+    fn iterations(&self) -> usize {
+        // One kink each on either side: Newton needs no more steps than there are pieces.
+        ELEMENTS + 1
+    }
+
+    fn force(&self, _p: &[f64], state: &[f64]) -> Option<f64> {
+        Some(state.iter().sum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::walk;
+    use super::*;
+
+    #[test]
+    fn it_starts_with_the_full_stiffness_and_ends_at_the_level() {
+        let force = walk(&MaxwellSlip, &[2e6, 2.0], &[1e-8, 1e-3], 5.0);
+        assert!((force[0] - 0.02).abs() < 1e-12);
+        assert!((force[1] - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_loop_inside_a_loop_closes_and_leaves_no_trace() {
+        let (out, inner) = (vec![1e-7; 60], vec![1e-7; 15]);
+        let back: Vec<f64> = inner.iter().map(|x| -x).collect();
+        let detour = [out.clone(), back, inner, vec![1e-7; 10]].concat();
+        let straight = [out, vec![1e-7; 10]].concat();
+        let p = [2e6, 2.0];
+        let (a, b) = (walk(&MaxwellSlip, &p, &detour, 5.0), walk(&MaxwellSlip, &p, &straight, 5.0));
+        assert!((a.last().unwrap() - b.last().unwrap()).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,64 @@
+//! Saturation of the drive.
+
+use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
+use crate::axis::Quantity;
+use crate::simd::limited;
+
+/// `clip(u, +-u_max)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Saturation;
+
+static ABOUT: About = About {
+    name: "saturation",
+    title: "saturation of the drive",
+    equation: "F = clip(u, +-u_max)",
+    parameters: &[Parameter::shape("u_max", "largest force", Quantity::Force, (1.0, 1e4), 300.0)],
+    slots: &[Slot::Drive],
+    shows: "a residual while the command is high; a spike at the end of the command's histogram",
+    reference: "W. Leonhard, Control of Electrical Drives, Springer",
+};
+
+impl Effect for Saturation {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn drive(&self) -> Option<&dyn Drive> {
+        Some(self)
+    }
+
+    fn shows_in_force(&self) -> bool {
+        // Which command beyond the limit was given does not follow from the motion.
+        false
+    }
+}
+
+impl Drive for Saturation {
+    fn advance(
+        &self,
+        p: Parameters<'_>,
+        _step: &Advance<'_>,
+        _state: &mut [f64],
+        force: &mut [f64],
+    ) {
+        for (force, most) in force.iter_mut().zip(p.get(0)) {
+            *force = limited(*force, *most);
+        }
+    }
+
+    fn invert(&self, _p: &[f64], _time: &[f64], _force: &mut [f64]) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Past;
+    use super::*;
+
+    #[test]
+    fn the_force_stays_within_its_limit() {
+        let (mut force, past) = ([-50.0, 20.0, 50.0], Past::default());
+        let step = Advance { duration: &[1e-3; 3], end: &[0.0; 3], past: &past };
+        Saturation.advance(Parameters::new(&[30.0; 3], 3), &step, &mut [], &mut force);
+        assert_eq!(force, [-30.0, 20.0, 30.0]);
+    }
+}
