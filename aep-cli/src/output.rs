@@ -12,13 +12,17 @@ use crate::failure::Failure;
 mod bars;
 mod check;
 mod discovery;
+mod residual;
 mod style;
 mod table;
+mod views;
 
 pub use check::data_check;
 pub use discovery::{Columns, ladder, parameters, ranking, regimes, verdict, where_it_fails};
+pub use residual::{lines, tests};
 pub use style::{bold, dim, heading};
 pub use table::{Align, Table};
+pub use views::{views, warnings};
 
 /// Prints to standard output; without colours where nobody would see them.
 pub fn print(text: &str) -> Result<(), Failure> {

@@ -29,6 +29,8 @@ pub struct Report<'a> {
     pub loaded: &'a Loaded,
     /// What was seen in the data.
     pub check: &'a DataCheck,
+    /// Further entries of the JSON.
+    pub more: Vec<(&'static str, Value)>,
 }
 
 impl Report<'_> {
@@ -65,6 +67,9 @@ impl Report<'_> {
             }
             Kind::Comparison => comparison(self.discovery),
         };
+        for (key, value) in &self.more {
+            json[*key] = value.clone();
+        }
         json["recording"] = json!(self.loaded.recording.name());
         json["data"] = serde_json::to_value(self.check).map_err(broken)?;
         Ok(json)
@@ -81,6 +86,10 @@ fn comparison(discovery: &Discovery) -> Value {
         "where": discovery.where_it_fails,
         "regimes": discovery.regimes,
         "noise_floor": discovery.noise_floor,
+        "metrics": last.and_then(|rung| rung.metrics),
+        "views": discovery.views,
+        "diagnosis": discovery.diagnosis,
+        "notes": discovery.notes,
         "ladder": discovery.ladder,
         "seed": discovery.seed,
     })

@@ -8,11 +8,13 @@ use friction_ident::{Library, Model};
 use missing_physics::data_check::cut_at_gaps;
 use missing_physics::discover::{evaluate, terms, weights};
 use missing_physics::fit::Fit;
+use missing_physics::metrics::SplitMetrics;
 use missing_physics::report::{Rung, Verdict};
 use missing_physics::split::Split;
 use missing_physics::where_it_fails::{View, coordinates, regimes};
 use missing_physics::{
-    Coordinate, Discovery, Fitted, ModelFamily, Recording, ladder, noise, search, uncertainty,
+    Coordinate, Discovery, Fitted, ModelFamily, Recording, diagnosis, ladder, noise, search,
+    uncertainty,
 };
 
 use crate::failure::Failure;
@@ -98,6 +100,7 @@ pub fn rung(family: &FrictionFamily, fit: &Fit, added: Option<String>) -> Rung {
         parameters: uncertainty::estimates(family, fit, &fitted),
         error: ladder::errors(family, fit, &split),
         p_value: None,
+        metrics: Some(SplitMetrics::of(&fit.residual, family.target(), &split)),
     }
 }
 
@@ -123,7 +126,7 @@ pub fn comparison(
     let mut noise_floor = family.noise();
     let floor = noise::floor(&last.residual, &state);
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
-    Discovery {
+    let mut discovery = Discovery {
         verdict: Verdict::NothingMissing,
         summary: String::new(),
         added: rungs.iter().filter_map(|rung| rung.added.clone()).collect(),
@@ -139,8 +142,13 @@ pub fn comparison(
         seed,
         wall_s: 0.0,
         notes: Vec::new(),
+        diagnosis: None,
+        diagnosis_base: None,
+        views: Vec::new(),
         plots: family.plots(&base.model, &last.model),
-    }
+    };
+    diagnosis::attach(family, base, last, seed, &mut discovery);
+    discovery
 }
 
 /// The plant that a rung describes.

@@ -1,7 +1,12 @@
 //! How a discovery is put into words, the same on the page and in the terminal.
 
+use missing_physics::diagnosis::Diagnosis;
 use missing_physics::quantity::{number, percent, quantity};
 use missing_physics::report::{Discovery, Estimate, Rung, SplitError, Verdict};
+use missing_physics::residual_tests::Whiteness;
+
+/// From this p-value on a finding may well be chance.
+const CHANCE: f64 = 0.05;
 
 /// What an error of a rung is, told by its key in the JSON.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -128,6 +133,65 @@ pub fn explained(discovery: &Discovery) -> Option<f64> {
     let at = |rung: &Rung| rung.error.get(&name.key).map(|error: &SplitError| error.validation);
     let (first, last) = (at(discovery.ladder.first()?)?, at(discovery.ladder.last()?)?);
     (first > floor).then(|| ((first - last) / (first - floor)).clamp(0.0, 1.0))
+}
+
+/// Unit of the compared quantity; empty where no error is known.
+pub fn main_unit(discovery: &Discovery) -> String {
+    let Some(main) = main_error(discovery) else { return String::new() };
+    let same = |name: &ErrorName| name.quantity == main.quantity && !name.is_relative();
+    errors(discovery).into_iter().find(same).map(|name| name.unit).unwrap_or_default()
+}
+
+/// Whether a residual is noise, as sentences.
+pub fn residual_tests(diagnosis: &Diagnosis) -> Vec<String> {
+    diagnosis.whiteness.iter().map(whiteness).chain(independence(diagnosis)).collect()
+}
+
+fn whiteness(test: &Whiteness) -> String {
+    if test.p_value > CHANCE {
+        return format!("The residual is white (p = {}).", p_value(test.p_value));
+    }
+    let memory = match test.memory_s {
+        Some(memory) if memory > 0.0 => {
+            format!("it resembles itself for about {}", quantity(memory, "s"))
+        }
+        Some(_) => "it resembles itself at longer lags".to_owned(),
+        None => format!(
+            "it resembles itself for more than {}",
+            quantity(test.interval_s * test.autocorrelation.len() as f64, "s")
+        ),
+    };
+    format!("The residual is not white (p {}): {memory}.", at(test.p_value))
+}
+
+fn independence(diagnosis: &Diagnosis) -> Option<String> {
+    let all = &diagnosis.independence;
+    if all.is_empty() {
+        return None;
+    }
+    // One of several tests is below its level more often than a single one.
+    let level = CHANCE / all.len() as f64;
+    let follows: Vec<String> = all
+        .iter()
+        .filter(|test| test.p_value <= level.max(1.0 / 200.0))
+        .map(|test| {
+            let side = if test.worst_lag_s < 0.0 { "before" } else { "after" };
+            let lag = quantity(test.worst_lag_s.abs(), "s");
+            format!("{} (correlation {:.2}, {lag} {side} it)", test.input, test.worst)
+        })
+        .collect();
+    Some(if follows.is_empty() {
+        let names: Vec<&str> = all.iter().map(|test| test.input.as_str()).collect();
+        format!("It does not follow {}.", names.join(", "))
+    } else {
+        format!("It follows {}.", follows.join(", "))
+    })
+}
+
+/// A p-value within a sentence: `= 0.012`, `< 0.001`.
+fn at(value: f64) -> String {
+    let text = p_value(value);
+    if text.starts_with('<') { text } else { format!("= {text}") }
 }
 
 #[cfg(test)]

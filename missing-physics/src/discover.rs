@@ -9,7 +9,7 @@ use crate::ladder::Ladder;
 use crate::report::Discovery;
 use crate::screen::{self, Screened, Screening};
 use crate::split::Split;
-use crate::{search, verdict, where_it_fails};
+use crate::{diagnosis, search, verdict, where_it_fails};
 
 /// What is asked of a discovery.
 #[derive(Debug)]
@@ -353,6 +353,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             interrupted: self.stopped(),
         };
         let mut discovery = verdict::report(self.family, self.ladder, &evidence);
+        diagnosis::attach(self.family, base, &self.fit, self.settings.seed, &mut discovery);
         discovery.seed = self.settings.seed;
         discovery.wall_s = self.started.elapsed().as_secs_f64();
         discovery

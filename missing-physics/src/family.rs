@@ -7,6 +7,7 @@ use aep_core::Scale;
 use rayon::prelude::*;
 
 use crate::report::{Plot, SplitError};
+use crate::spectrum::FullRate;
 use crate::split::Split;
 
 /// What a parameter does to the prediction.
@@ -232,6 +233,18 @@ pub trait ModelFamily: Sync {
     /// Errors of the model in other views than the prediction, by the name of the error.
     fn views(&self, _model: &Fitted, _split: &Split) -> BTreeMap<String, SplitError> {
         BTreeMap::new()
+    }
+
+    /// The residual of the model at the full rate of the recording, for spectra; nothing where the grid
+    /// has all there is.
+    fn full_rate(&self, _model: &Fitted) -> Option<FullRate> {
+        None
+    }
+
+    /// Autocorrelation at lag 1, 2, ... of the grid that white noise in the data has after the family's
+    /// own smoothing; empty where it stays white.
+    fn colour(&self) -> Vec<f64> {
+        Vec::new()
     }
 
     /// What is known of the noise from the measurement itself, by quantity.

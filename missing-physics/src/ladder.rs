@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::family::ModelFamily;
 use crate::fit::Fit;
+use crate::metrics::SplitMetrics;
 use crate::report::{Ambiguity, Candidate, Rung, SplitError};
 use crate::screen::Screened;
 use crate::split::Split;
@@ -117,6 +118,7 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
             parameters: uncertainty::estimates(self.family, fit, &self.fitted),
             error: errors(self.family, fit, &self.split),
             p_value,
+            metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), &self.split)),
         }
     }
 }

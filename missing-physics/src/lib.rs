@@ -5,25 +5,32 @@
 //! on held-out data. The engine knows nothing of friction or any other subject: it works for every
 //! [`ModelFamily`].
 
+pub mod autocorrelation;
 pub mod basis;
 pub mod data_check;
+pub mod diagnosis;
 pub mod discover;
 pub mod evidence;
 pub mod family;
 pub mod fit;
 pub mod in_time;
 pub mod ladder;
+pub mod metrics;
 pub mod noise;
 pub mod placebo;
 pub mod quantity;
 pub mod recording;
 pub mod report;
+pub mod residual_map;
+pub mod residual_tests;
 pub mod screen;
 pub mod search;
 pub mod shapes;
+pub mod spectrum;
 pub mod split;
 pub mod uncertainty;
 pub mod verdict;
+pub mod views;
 pub mod where_it_fails;
 
 pub use discover::{DiscoverError, Event, Observer, Settings, discover, suggest};

@@ -7,6 +7,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::diagnosis::Diagnosis;
+use crate::metrics::SplitMetrics;
+use crate::views::View;
+
 /// What the data say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -59,6 +63,9 @@ pub struct Rung {
     pub error: BTreeMap<String, SplitError>,
     /// Chance that a term with no part in the data gains as much; nothing on the base rung.
     pub p_value: Option<f64>,
+    /// The error of the compared quantity in its usual measures.
+    #[serde(default)]
+    pub metrics: Option<SplitMetrics>,
 }
 
 /// How well a candidate would explain what the model of a rung leaves.
@@ -174,6 +181,15 @@ pub struct Discovery {
     /// Things the user should know: doubts about the data, limits of the verdict.
     #[serde(default)]
     pub notes: Vec<String>,
+    /// What the residual of the last model says by itself.
+    #[serde(default)]
+    pub diagnosis: Option<Diagnosis>,
+    /// The same of the base model, where it is another one.
+    #[serde(default)]
+    pub diagnosis_base: Option<Diagnosis>,
+    /// The errors of the last model in several views, where they were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub views: Vec<View>,
     /// Curves for the page; not part of the JSON contract.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plots: Vec<Plot>,

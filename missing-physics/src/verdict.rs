@@ -127,6 +127,9 @@ pub fn report<F: ModelFamily + ?Sized>(
         seed: 0,
         wall_s: 0.0,
         notes,
+        diagnosis: None,
+        diagnosis_base: None,
+        views: Vec::new(),
         plots: plots(family, evidence),
     }
 }

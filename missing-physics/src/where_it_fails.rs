@@ -127,7 +127,7 @@ pub fn profile(coordinate: &Coordinate, residual: &[f64]) -> (Vec<f64>, Vec<f64>
     (at, means)
 }
 
-fn parity(coordinate: &Coordinate, residual: &[f64], weights: &[f64]) -> Vec<f64> {
+pub(crate) fn parity(coordinate: &Coordinate, residual: &[f64], weights: &[f64]) -> Vec<f64> {
     let weighted = residual.iter().zip(weights).map(|(r, w)| r * w);
     match &coordinate.parity {
         None => weighted.collect(),
@@ -136,13 +136,13 @@ fn parity(coordinate: &Coordinate, residual: &[f64], weights: &[f64]) -> Vec<f64
 }
 
 /// Points grouped by the rank of a coordinate.
-struct Bins {
-    of: Vec<usize>,
-    count: Vec<f64>,
+pub(crate) struct Bins {
+    pub(crate) of: Vec<usize>,
+    pub(crate) count: Vec<f64>,
 }
 
 impl Bins {
-    fn new(values: &[f64]) -> Self {
+    pub(crate) fn new(values: &[f64]) -> Self {
         let mut order: Vec<usize> = (0..values.len()).collect();
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
         let (mut of, mut count) = (vec![0; values.len()], vec![0.0; BINS]);
@@ -160,7 +160,7 @@ impl Bins {
         Self { of, count }
     }
 
-    fn means(&self, values: &[f64]) -> Vec<f64> {
+    pub(crate) fn means(&self, values: &[f64]) -> Vec<f64> {
         let mut sums = [0.0; BINS];
         values.iter().zip(&self.of).for_each(|(value, bin)| sums[*bin] += value);
         sums.iter().zip(&self.count).map(|(sum, count)| sum / count.max(1.0)).collect()

@@ -1,8 +1,12 @@
-//! `aep compare`: a given model on a measurement.
+//! `aep compare`: given models on a measurement.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use friction_ident::Model;
+use friction_ident::family::FrictionFamily;
 use missing_physics::data_check::check;
+use missing_physics::fit::Fit;
+use missing_physics::views::View;
 
 use crate::app::Global;
 use crate::args::{DataArgs, OutputArgs};
@@ -11,17 +15,18 @@ use crate::output::{self, heading};
 use crate::report::{Kind, Report};
 use crate::steps;
 
-/// Compare a model with a measurement: errors and where it fails
+/// Compare a model with a measurement: errors in several views and where it fails
 ///
-/// Nothing is fitted: the model is taken as it stands in the file.
+/// Nothing is fitted: the model is taken as it stands in the file. Several models stand side by side in
+/// the table of views; everything else is told of the first one.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     #[command(flatten)]
     data: DataArgs,
-    /// The model, as written by identify, extend or discover
-    #[arg(long, value_name = "MODEL.json")]
-    model: PathBuf,
+    /// The model, as written by identify, extend or discover; may be given several times
+    #[arg(long, value_name = "MODEL.json", required = true)]
+    model: Vec<PathBuf>,
     /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
@@ -35,30 +40,84 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   aep compare run.csv --model model.json
+  aep compare run.csv --model model.json --model better.json
   aep compare run.csv --model model.json --html comparison.html --json comparison.json";
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let model = steps::read_model(&args.model)?;
+    let models: Vec<Model> =
+        args.model.iter().map(|path| steps::read_model(path)).collect::<Result<_, _>>()?;
     let loaded = args.data.read()?;
     let family = steps::family(&loaded.recording, args.bandwidth)?;
-    let fit = steps::as_given(&family, &model)?;
-    let rung = steps::rung(&family, &fit, None);
+    let fits: Vec<Fit> =
+        models.iter().map(|model| steps::as_given(&family, model)).collect::<Result<_, _>>()?;
+    let Some(fit) = fits.first() else {
+        return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
+    };
+    let rung = steps::rung(&family, fit, None);
     let effects = rung.effects.join(" + ");
-    let discovery = steps::comparison(&family, &fit, &fit, vec![rung], args.seed);
+    let mut discovery = steps::comparison(&family, fit, fit, vec![rung], args.seed);
+    let (views, mut notes) = side_by_side(&family, &args.model, &fits)?;
+    discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
+    let warnings = output::warnings(&views, &notes);
+    notes.splice(0..0, missing_physics::views::disagreements(&views));
+    discovery.notes = notes;
     let data = check(&loaded.recording);
-    let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
+    let report = Report {
+        kind: Kind::Comparison,
+        discovery: &discovery,
+        loaded: &loaded,
+        check: &data,
+        more: vec![("models", in_json(&args.model, &views))],
+    };
     let files = report.save(&args.results)?;
     if global.quiet || args.results.own_stdout() {
         return Ok(());
     }
+    let remains = discovery.diagnosis.as_ref().map_or_else(String::new, |diagnosis| {
+        output::tests(diagnosis) + "\n" + &output::lines(&discovery, diagnosis)
+    });
     let text = heading(&format!("Errors of {effects}"))
         + &output::ladder(&discovery, "the model")
+        + &heading("In several views")
+        + &output::views(&views)
+        + &warnings
         + &heading("Where it fails")
         + &output::regimes(&discovery.regimes)
         + "\n"
         + &output::where_it_fails(&discovery.where_it_fails)
+        + &heading("Is what remains noise?")
+        + &remains
         + &files;
     output::print(&text)
+}
+
+/// The name of a model's file with its views.
+type Named = (String, Vec<View>);
+
+/// The views of every model, and why some are missing.
+fn side_by_side(
+    family: &FrictionFamily,
+    paths: &[PathBuf],
+    fits: &[Fit],
+) -> Result<(Vec<Named>, Vec<String>), Failure> {
+    let (mut views, mut notes) = (Vec::new(), Vec::new());
+    for (path, fit) in paths.iter().zip(fits) {
+        let all = family.side_by_side(&fit.model)?;
+        views.push((name(path), all.views));
+        notes.extend(all.notes.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());
+    }
+    Ok((views, notes))
+}
+
+fn name(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
+}
+
+fn in_json(paths: &[PathBuf], views: &[Named]) -> serde_json::Value {
+    let models = paths
+        .iter()
+        .zip(views)
+        .map(|(path, (_, views))| serde_json::json!({ "model": path.to_string_lossy(), "views": views }));
+    models.collect()
 }

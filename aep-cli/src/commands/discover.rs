@@ -70,7 +70,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let discovery = discover(&family, &settings, &mut progress)?;
     drop(progress);
     let report =
-        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data };
+        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, path)?;

@@ -71,7 +71,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
     let mut files = report.save(&args.results)?;
     output::save(&args.output, &(extended.to_json()? + "\n"))?;
     files += &written("model", &args.output);

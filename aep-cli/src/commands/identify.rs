@@ -62,7 +62,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         output::save(path, &(model.to_json()? + "\n"))?;

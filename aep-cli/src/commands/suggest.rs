@@ -55,7 +55,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data };
+        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
     let files = report.save(&args.results)?;
     if quiet {
         return Ok(());

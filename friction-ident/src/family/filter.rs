@@ -108,6 +108,17 @@ impl Kernel {
         Self { weights: raw.iter().map(|weight| weight / sum).collect() }
     }
 
+    /// Autocorrelation of white noise behind it at every `stride`-th sample, from lag `stride` on.
+    pub fn colour(&self, stride: usize) -> Vec<f64> {
+        let square = dot(&self.weights, &self.weights);
+        (stride..self.weights.len())
+            .step_by(stride)
+            .map(|lag| {
+                dot(&self.weights[lag..], &self.weights[..self.weights.len() - lag]) / square
+            })
+            .collect()
+    }
+
     /// Samples that it needs to either side.
     pub fn reach_of(cutoff: f64) -> usize {
         (2.0 / cutoff).ceil() as usize
@@ -136,6 +147,14 @@ mod tests {
         assert!((gain(0.02) - 1.0).abs() < 0.01);
         assert!((gain(0.05) - 0.5).abs() < 0.01);
         assert!(gain(0.1).abs() < 0.01 && gain(0.3).abs() < 0.01);
+    }
+
+    #[test]
+    fn white_noise_behind_the_kernel_has_the_colour_of_a_sinc() {
+        // A sharp low-pass at f gives sin(2 pi f k) / (2 pi f k); the taper makes it a little shorter.
+        let colour = Kernel::new(0.05).colour(8);
+        assert!((colour[0] - 0.234).abs() < 0.1 && (colour[1] + 0.189).abs() < 0.08, "{colour:?}");
+        assert!(colour.iter().all(|rho| rho.abs() < 1.0));
     }
 
     #[test]

@@ -3,8 +3,10 @@
 //!
 //! Every effect of the library is a candidate term; the mass is part of every model.
 
+pub mod compare;
 mod coordinates;
 mod filter;
+mod full_rate;
 mod limits;
 mod plots;
 mod preparation;
@@ -16,6 +18,7 @@ use std::ops::Range;
 
 use missing_physics::basis::{dot, gram, solve};
 use missing_physics::report::{Plot, SplitError};
+use missing_physics::spectrum::FullRate;
 use missing_physics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
 
@@ -357,6 +360,14 @@ impl ModelFamily for FrictionFamily {
             |_| BTreeMap::new(),
             |model| views::views(&model, &self.recording, &self.time, split),
         )
+    }
+
+    fn full_rate(&self, fitted: &Fitted) -> Option<FullRate> {
+        Some(full_rate::full_rate(self, &self.model(fitted).ok()?))
+    }
+
+    fn colour(&self) -> Vec<f64> {
+        self.prepared.colour()
     }
 
     fn noise(&self) -> BTreeMap<String, f64> {

@@ -78,6 +78,8 @@ pub struct Prepared {
     pub moving: Vec<f64>,
     /// Samples of the comparison grid.
     pub grid: Vec<usize>,
+    /// Samples from one point of the grid to the next.
+    pub stride: usize,
     /// Bandwidth of the comparison, Hz.
     pub bandwidth: f64,
     /// Standard deviation of what the smoother took out of the position: its noise, m or rad.
@@ -145,12 +147,14 @@ impl Prepared {
             segments: raw.segments,
             moving,
             grid: Vec::new(),
+            stride: 1,
             bandwidth: relative / interval,
             position_noise,
             rest_speed,
             heavier: (heavy.velocity, heavy.acceleration),
             kernel: Kernel::new(relative),
         };
+        prepared.stride = prepared.stride_for(relative);
         prepared.grid = prepared.choose_grid(relative);
         if prepared.grid.len() < LEAST_POINTS {
             let (points, needed) = (prepared.grid.len(), LEAST_POINTS);
@@ -159,8 +163,12 @@ impl Prepared {
         Ok(prepared)
     }
 
+    fn stride_for(&self, relative: f64) -> usize {
+        ((1.0 / (GRID * relative)) as usize).max(self.time.len() / MOST_POINTS).max(1)
+    }
+
     fn choose_grid(&self, relative: f64) -> Vec<usize> {
-        let stride = ((1.0 / (GRID * relative)) as usize).max(self.time.len() / MOST_POINTS).max(1);
+        let stride = self.stride;
         // The kernel must not reach beyond a piece.
         let edge = Kernel::reach_of(relative);
         let inner = |range: &Range<usize>| {
@@ -174,6 +182,11 @@ impl Prepared {
     pub fn compare(&self, signal: &[f64]) -> Vec<f64> {
         let masked: Vec<f64> = signal.iter().zip(&self.moving).map(|(s, m)| s * m).collect();
         self.grid.iter().map(|&k| self.kernel.at(&masked, k)).collect()
+    }
+
+    /// Autocorrelation that the low-pass gives to white noise, at steps of the grid.
+    pub fn colour(&self) -> Vec<f64> {
+        self.kernel.colour(self.stride)
     }
 
     /// A signal on the comparison grid as it is.

@@ -44,7 +44,7 @@ pub fn views(
 }
 
 /// Whether the block around an instant is held out; nothing between blocks.
-fn held_out(time: f64, grid: &[f64], split: &Split) -> Option<bool> {
+pub(super) fn held_out(time: f64, grid: &[f64], split: &Split) -> Option<bool> {
     split
         .blocks()
         .find(|(range, _)| {

@@ -1,0 +1,213 @@
+//! The error of a drive's model in several views side by side, each with what it is worth.
+
+use std::ops::Range;
+
+use missing_physics::metrics::{Metrics, SplitMetrics, Sums};
+use missing_physics::split::Split;
+use missing_physics::views::View;
+use missing_physics::{Coordinate, Fitted, ModelFamily, noise};
+
+use super::FrictionFamily;
+use super::views::held_out;
+use crate::axis::Quantity;
+use crate::model::{Model, ModelError};
+use crate::simulator::{Input, Start, simulate};
+use crate::windows::{Window, WindowErrors, WindowOptions, window_errors};
+
+mod tracking;
+
+/// Lengths of restarted windows, s.
+const LENGTHS: [f64; 3] = [0.05, 0.1, 0.2];
+/// Fewest samples of a window.
+const SAMPLES: f64 = 10.0;
+/// A free run whose error is this many times that of the longest windows has drifted.
+const DRIFTED: f64 = 5.0;
+
+/// The views of a model, and why some are missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SideBySide {
+    /// The views, those that decide first.
+    pub views: Vec<View>,
+    /// Views that there are none of, and why.
+    pub notes: Vec<String>,
+}
+
+impl FrictionFamily {
+    /// The error of `fitted` as force along the measured motion, over restarted windows of 0.05, 0.1 and
+    /// 0.2 s, in a free run and, where the recording has a channel `reference`, in the closed loop.
+    ///
+    /// # Errors
+    /// The terms do not fit together.
+    pub fn side_by_side(&self, fitted: &Fitted) -> Result<SideBySide, ModelError> {
+        let model = self.model(fitted)?;
+        let split = Split::new(self.target.len(), self.blocks.clone());
+        let mut all = SideBySide { views: vec![self.force_view(fitted, &split)], ..<_>::default() };
+        for length in lengths(self.recording.interval()) {
+            match self.windows(&model, length, &split) {
+                Ok(view) => all.views.push(view),
+                Err(note) => all.notes.push(note),
+            }
+        }
+        let longest = all.views.last().map_or(f64::NAN, |view| view.metrics.validation.rms);
+        match self.free_run(&model, longest, &split) {
+            Ok(view) => all.views.push(view),
+            Err(note) => all.notes.push(note),
+        }
+        match tracking::view(self, &model, &split) {
+            Ok(view) => all.views.push(view),
+            Err(note) => all.notes.push(note),
+        }
+        Ok(all)
+    }
+
+    fn force_view(&self, fitted: &Fitted, split: &Split) -> View {
+        let prediction = missing_physics::fit::predict(self, fitted);
+        let residual = missing_physics::fit::residual(self, &prediction);
+        let state: Vec<Coordinate> = self.coordinates.iter().filter(|c| c.state).cloned().collect();
+        let quantity = self.quantity();
+        View {
+            name: format!("{} residual", quantity.name),
+            about: format!(
+                "{} along the measured motion, below {:.3} Hz",
+                quantity.name, self.prepared.bandwidth
+            ),
+            unit: quantity.unit,
+            metrics: SplitMetrics::of(&residual, &self.target, split),
+            floor: Some(noise::floor(&residual, &state)).filter(|floor| *floor > 0.0),
+            decides: true,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn windows(&self, model: &Model, length: f64, split: &Split) -> Result<View, String> {
+        let text = format!("{length:.3}");
+        let name = format!("windows of {} s", text.trim_end_matches('0'));
+        let errors = window_errors(model, &self.recording, &WindowOptions::new(length))
+            .map_err(|error| format!("{name}: {error}"))?;
+        let (mut fit, mut validation) = (Vec::new(), Vec::new());
+        for window in errors.windows {
+            let middle = usize::midpoint(window.samples.start, window.samples.end);
+            match held_out(self.recording.time()[middle], &self.time, split) {
+                Some(true) => validation.push(window),
+                Some(false) => fit.push(window),
+                None => {}
+            }
+        }
+        let position = self.recording.require("position").map_err(|error| error.to_string())?;
+        let part = |windows: Vec<Window>| of_windows(length, windows, position);
+        let metrics = SplitMetrics { fit: part(fit), validation: part(validation) };
+        if !(metrics.fit.rms.is_finite() && metrics.validation.rms.is_finite()) {
+            return Err(format!(
+                "{name}: there are none on fitted or on held-out data, or the model runs away"
+            ));
+        }
+        Ok(View {
+            name,
+            about: "position, simulated from a fitted start in each window; outliers capped".into(),
+            unit: self.axis.unit(Quantity::Length).to_owned(),
+            metrics,
+            floor: Some(self.prepared.position_noise).filter(|floor| *floor > 0.0),
+            decides: true,
+            warnings: Vec::new(),
+        })
+    }
+
+    fn free_run(&self, model: &Model, longest: f64, split: &Split) -> Result<View, String> {
+        let error = self.free_run_error(model).map_err(|error| format!("free run: {error}"))?;
+        let position = self.recording.require("position").map_err(|error| error.to_string())?;
+        let metrics = self.by_blocks(&error, position, 0..error.len(), split);
+        let unit = self.axis.unit(Quantity::Length);
+        let mut warnings = Vec::new();
+        let times = metrics.validation.rms / longest;
+        if times > DRIFTED {
+            warnings.push(format!(
+                "the free run has drifted: {times:.0} times the error of short windows. It adds up the \
+                 force error twice, also that of noise, and ranks models wrongly"
+            ));
+        }
+        Ok(View {
+            name: "free run".into(),
+            about: "position, simulated from the first sample of each segment".into(),
+            unit: unit.to_owned(),
+            metrics,
+            floor: None,
+            decides: false,
+            warnings,
+        })
+    }
+
+    /// Measured less simulated position, sample by sample.
+    fn free_run_error(&self, model: &Model) -> Result<Vec<f64>, String> {
+        let recording = &self.recording;
+        let force = recording.require("force").map_err(|error| error.to_string())?;
+        let position = recording.require("position").map_err(|error| error.to_string())?;
+        let mut error = Vec::with_capacity(position.len());
+        for (range, prepared) in recording.segments().iter().zip(&self.prepared.segments) {
+            let first = prepared.start;
+            let start = Start {
+                velocity: self.prepared.velocity[first],
+                command: force[range.start],
+                ..Start::at(self.prepared.position[first], 0.0)
+            };
+            let (time, force) = (&recording.time()[range.clone()], &force[range.clone()]);
+            let run = simulate(model, &Input::new(time, force, recording.hold()), &start)
+                .map_err(|error| error.to_string())?;
+            error.extend(position[range.clone()].iter().zip(&run.position).map(|(a, b)| a - b));
+        }
+        Ok(error)
+    }
+
+    /// Measures of an error over `samples` of the recording; `error` begins with the first of them.
+    fn by_blocks(
+        &self,
+        error: &[f64],
+        measured: &[f64],
+        samples: Range<usize>,
+        split: &Split,
+    ) -> SplitMetrics {
+        let (mut fit, mut validation) = (Sums::default(), Sums::default());
+        let time = self.recording.time();
+        for (k, error) in samples.zip(error) {
+            match held_out(time[k], &self.time, split) {
+                Some(true) => validation.add(&[*error], &[measured[k]]),
+                Some(false) => fit.add(&[*error], &[measured[k]]),
+                None => {}
+            }
+        }
+        SplitMetrics { fit: fit.metrics(), validation: validation.metrics() }
+    }
+}
+
+/// Window lengths with enough samples, each once.
+fn lengths(interval: f64) -> Vec<f64> {
+    let mut lengths: Vec<f64> =
+        LENGTHS.iter().map(|length| length.max(SAMPLES * interval)).collect();
+    lengths.dedup();
+    lengths
+}
+
+/// Measures over windows. Only the root mean square of each window is known, so that the variance
+/// accounted for is a lower limit; both percentages refer to the motion inside a window.
+fn of_windows(length: f64, windows: Vec<Window>, position: &[f64]) -> Metrics {
+    let mut inside = Sums::default();
+    for window in &windows {
+        let positions = &position[window.samples.clone()];
+        let mean = positions.iter().sum::<f64>() / positions.len().max(1) as f64;
+        let motion: Vec<f64> = positions.iter().map(|x| x - mean).collect();
+        inside.add(&vec![0.0; motion.len()], &motion);
+    }
+    let points = inside.metrics().points;
+    let motion = inside.size();
+    let rms = WindowErrors { length, windows }.robust_rms();
+    let share = (motion > 0.0).then(|| rms / motion);
+    Metrics {
+        rms,
+        relative: share,
+        fit_percent: share.map(|share| 100.0 * (1.0 - share)),
+        variance_accounted_for_percent: share.map(|share| 100.0 * (1.0 - share * share)),
+        points,
+    }
+}
+
+#[cfg(test)]
+mod tests;
