@@ -17,15 +17,24 @@ impl Plants {
             self.load_elements();
         }
         self.call_drives(duration, command);
-        self.scratch.left.copy_from_slice(duration);
         if self.contact.is_some() {
+            self.set_duration(duration);
             self.elastic_piece();
-            advance(duration, &mut self.time);
         } else {
+            self.scratch.left.copy_from_slice(duration);
             self.rigid_pieces();
         }
         if self.past.is_kept() {
             self.past.push(&self.time, &self.velocity);
+        }
+    }
+
+    /// An elastic step is one piece: its length and the rate that belongs to it seldom change.
+    fn set_duration(&mut self, duration: &[f64]) {
+        let s = &mut self.scratch;
+        if s.left != duration {
+            s.left.copy_from_slice(duration);
+            invert(duration, &mut s.rate);
         }
     }
 
@@ -62,10 +71,7 @@ impl Plants {
         self.predict();
         self.call_level();
         self.balance(false);
-        if self.solve_contact() {
-            let s = &mut self.scratch;
-            displace(&s.left, &s.mean, &mut s.displacement);
-        } else {
+        if !self.solve_contact() {
             self.newton();
             self.scratch.taken.copy_from_slice(&self.scratch.left);
             self.commit_elements();
@@ -73,11 +79,12 @@ impl Plants {
         let s = &mut self.scratch;
         close_elastic(
             &s.left,
+            &s.rate,
             &s.mean,
-            &s.displacement,
             &mut self.position,
             &mut self.velocity,
             &mut self.slope,
+            &mut self.time,
         );
         self.watch_contact();
     }
@@ -196,8 +203,10 @@ impl Plants {
             self.dwell[i] += if slides { 0.0 } else { self.scratch.left[i] };
             self.sliding[i] = f64::from(u8::from(slides));
         }
-        self.scratch.taken.copy_from_slice(&self.scratch.left);
         if !self.memories.is_empty() {
+            let s = &mut self.scratch;
+            s.taken.copy_from_slice(&s.left);
+            displace(&s.left, &s.mean, &mut s.displacement);
             self.remember();
         }
     }
@@ -336,20 +345,29 @@ vectorised! {
 
     fn close_elastic(
         left: &[f64],
+        rate: &[f64],
         mean: &[f64],
-        displacement: &[f64],
         x: &mut [f64],
         v: &mut [f64],
         slope: &mut [f64],
+        time: &mut [f64],
     ) {
         let n = left.len();
-        let (mean, displacement) = (&mean[..n], &displacement[..n]);
-        let (x, v, slope) = (&mut x[..n], &mut v[..n], &mut slope[..n]);
+        let (rate, mean) = (&rate[..n], &mean[..n]);
+        let (x, v, slope, time) = (&mut x[..n], &mut v[..n], &mut slope[..n], &mut time[..n]);
         for i in 0..n {
-            let change = if left[i] > 0.0 { 2.0 * (mean[i] - v[i]) } else { 0.0 };
-            slope[i] = if left[i] > 0.0 { change / left[i] } else { slope[i] };
-            x[i] += displacement[i];
+            let moves = left[i] > 0.0;
+            let change = if moves { 2.0 * (mean[i] - v[i]) } else { 0.0 };
+            slope[i] = if moves { change * rate[i] } else { slope[i] };
+            x[i] += left[i] * mean[i];
             v[i] += change;
+            time[i] += left[i];
+        }
+    }
+
+    fn invert(duration: &[f64], rate: &mut [f64]) {
+        for (rate, duration) in rate.iter_mut().zip(duration) {
+            *rate = 1.0 / duration;
         }
     }
 
