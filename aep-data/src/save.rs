@@ -22,7 +22,17 @@ pub struct SaveError {
 /// # Errors
 /// The path and what the system says.
 pub fn save(path: &Path, bytes: &[u8]) -> Result<(), SaveError> {
-    write(path, bytes).map_err(|source| SaveError { path: path.to_owned(), source })
+    write(path, bytes)
+        .map_err(|error| SaveError { path: path.to_owned(), source: without_path(error) })
+}
+
+/// What the system says: the name of the file in between, which `tempfile` adds, means nothing to
+/// the user.
+fn without_path(error: std::io::Error) -> std::io::Error {
+    match error.to_string().split_once(" at path ") {
+        Some((said, _)) => std::io::Error::new(error.kind(), said),
+        None => error,
+    }
 }
 
 fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
@@ -80,6 +90,7 @@ mod tests {
     fn a_folder_that_is_not_there_is_named() {
         let error = save(Path::new("/no/such/folder/out.json"), b"x").unwrap_err();
         assert!(error.to_string().contains("/no/such/folder/out.json"));
+        assert!(!error.to_string().contains(".aep-"), "{error}");
     }
 
     #[cfg(unix)]

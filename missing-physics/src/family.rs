@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use aep_core::Scale;
+use rayon::prelude::*;
 
 use crate::report::{Plot, SplitError};
 use crate::split::Split;
@@ -188,6 +189,18 @@ pub trait ModelFamily: Sync {
         shape: &[f64],
     ) -> Vec<Vec<f64>> {
         crate::shapes::columns(self, model, prediction, term, shape)
+    }
+
+    /// [`ModelFamily::columns`] for many shapes of a term, in their order. A family that can do so
+    /// cheaper than one by one says how.
+    fn columns_of_shapes(
+        &self,
+        model: &Fitted,
+        prediction: &[f64],
+        term: usize,
+        shapes: &[Vec<f64>],
+    ) -> Vec<Vec<Vec<f64>>> {
+        shapes.par_iter().map(|shape| self.columns(model, prediction, term, shape)).collect()
     }
 
     /// What the residual may depend on.

@@ -8,6 +8,7 @@
 pub mod basis;
 pub mod data_check;
 pub mod discover;
+pub mod evidence;
 pub mod family;
 pub mod fit;
 pub mod in_time;

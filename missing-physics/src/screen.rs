@@ -1,9 +1,11 @@
 //! Which candidate explains what the model leaves: every term, its shapes profiled, its signs kept,
 //! all at once with the parameters that the model already has.
 
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::basis::{Basis, constrained, dot, gram};
+use crate::basis::{Basis, add_scaled, constrained, dot, gram, solve};
+use crate::evidence::Evidence;
 use crate::family::{Fitted, ModelFamily};
 use crate::fit::Fit;
 use crate::placebo;
@@ -12,12 +14,13 @@ use crate::split::Split;
 
 /// Number of rearranged residuals.
 const PLACEBOS: usize = 199;
-
 /// A column whose square falls below this share when the model's own freedom is taken out says
 /// nothing that the model does not say.
 const NOTHING_NEW: f64 = 1e-6;
 /// Of two shapes that remove nearly as much, this close, the one tried first is taken.
 const AS_GOOD: f64 = 0.97;
+/// Trials per matrix product.
+const CHUNK: usize = 64;
 
 /// A candidate with the best shape that was tried.
 #[derive(Clone, Debug)]
@@ -34,31 +37,9 @@ pub struct Screened {
     pub p_value: f64,
     /// Share of the squared error that this candidate would have to remove to be found at 5 %.
     pub needed: f64,
-    /// Square of the change of the prediction per unit of the first amplitude, after the model's own
-    /// parameters have adapted: what turns a share of the error into a size.
+    /// Square of the change of the prediction on the fitted blocks per unit of the first amplitude,
+    /// after the model's own parameters have adapted: what turns a share of the error into a size.
     pub leverage: f64,
-    /// The change of the prediction on the whole grid.
-    pub change: Vec<f64>,
-}
-
-/// One term with one shape: its columns, weighted and with the model's own freedom projected out.
-struct Trial {
-    term: usize,
-    shape: Vec<f64>,
-    columns: Vec<Vec<f64>>,
-    gram: Vec<Vec<f64>>,
-    positive: Vec<bool>,
-}
-
-impl Trial {
-    /// Fall of the squared residual, with the coefficients.
-    fn reduction(&self, residual: &[f64]) -> (f64, Vec<f64>) {
-        let moment: Vec<f64> = self.columns.iter().map(|column| dot(column, residual)).collect();
-        let beta = constrained(&self.gram, &moment, &self.positive);
-        // With the exact solution of the active columns the fall is just their moments.
-        let fall: f64 = beta.iter().zip(&moment).map(|(b, m)| b * m).sum();
-        (fall.max(0.0), beta)
-    }
 }
 
 /// What is screened, and how.
@@ -75,6 +56,41 @@ pub struct Screening<'a> {
     pub seed: u64,
 }
 
+/// One term with one shape: its columns, weighted and with the model's own freedom projected out.
+struct Trial {
+    /// Place of the term among the candidates.
+    candidate: usize,
+    shape: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+    gram: Vec<Vec<f64>>,
+    positive: Vec<bool>,
+    /// True where the columns have been made orthonormal: signs are free, and the fall of the error
+    /// is the sum of the squared moments.
+    orthonormal: bool,
+}
+
+impl Trial {
+    fn new(candidate: usize, shape: Vec<f64>, columns: Vec<Vec<f64>>, positive: Vec<bool>) -> Self {
+        let orthonormal = !positive.contains(&true);
+        let columns = if orthonormal { Basis::of(&columns).columns().to_vec() } else { columns };
+        let gram = gram(&columns);
+        Self { candidate, shape, columns, gram, positive, orthonormal }
+    }
+
+    /// Fall of the square of a residual that has these scalar products with the columns.
+    fn fall(&self, moment: &[f64]) -> f64 {
+        if self.orthonormal {
+            return moment.iter().map(|m| m * m).sum();
+        }
+        if let ([m], [row]) = (moment, self.gram.as_slice()) {
+            return if row[0] > 0.0 { m.max(0.0).powi(2) / row[0] } else { 0.0 };
+        }
+        let beta = constrained(&self.gram, moment, &self.positive);
+        // With the exact solution of the active columns the fall is just their moments.
+        beta.iter().zip(moment).map(|(b, m)| b * m).sum::<f64>().max(0.0)
+    }
+}
+
 /// Screens candidates against the residual of `fit`; best first.
 pub fn screen<F: ModelFamily + ?Sized>(
     family: &F,
@@ -85,40 +101,35 @@ pub fn screen<F: ModelFamily + ?Sized>(
         column.iter().zip(screening.weights).map(|(value, weight)| value * weight).collect()
     };
     let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
-    let residual = weigh(&fit.residual);
     let trials = trials(family, fit, screening, &own);
-
+    let residual = weigh(&fit.residual);
     let orders =
         placebo::rearrangements(residual.len(), PLACEBOS, screening.motion, screening.seed);
-    let null: Vec<Vec<f64>> = orders
-        .par_iter()
-        .map(|order| {
-            let shifted: Vec<f64> = order.iter().map(|&k| residual[k]).collect();
-            shares(&shifted, &own, &trials, screening.candidates)
-        })
-        .collect();
-    let measured = shares(&residual, &own, &trials, screening.candidates);
-    let evidence = Evidence::new(&measured, &null);
+    // The measured residual first, then the placebos.
+    let mut residuals = vec![residual.clone()];
+    residuals.extend(orders.iter().map(|order| order.iter().map(|&k| residual[k]).collect()));
+    let falls = falls(&trials, &residuals);
+    let shares = shares(&residuals, &own, &trials, &falls, screening.candidates.len());
+    let evidence = Evidence::new(&shares[0], &shares[1..]);
 
     let mut screened: Vec<Screened> = screening
         .candidates
         .par_iter()
         .enumerate()
         .filter_map(|(k, &term)| {
-            let best = best_trial(&trials, term, &residual)?;
-            let (_, beta) = best.reduction(&residual);
-            let (gain, change) = held_out(family, fit, screening, best, &beta);
+            let best = best_trial(&trials, &falls, k)?;
+            let held_out = held_out(family, fit, screening, best);
             let about = &family.terms()[term];
-            let amplitude: &[f64] = if amplitudes(about).is_empty() { &[] } else { &beta };
+            let amplitude: &[f64] =
+                if amplitudes(about).is_empty() { &[] } else { &held_out.amplitude };
             Some(Screened {
                 term,
                 values: assemble(about, &best.shape, amplitude),
-                gain,
-                gain_all: measured[k],
+                gain: held_out.gain,
+                gain_all: shares[0][k],
                 p_value: evidence.p_value(k),
                 needed: evidence.needed(k),
-                leverage: most_visible(&trials, term),
-                change,
+                leverage: held_out.leverage,
             })
         })
         .collect();
@@ -132,30 +143,37 @@ fn trials<F: ModelFamily + ?Sized>(
     screening: &Screening<'_>,
     own: &Basis,
 ) -> Vec<Trial> {
-    let all: Vec<(usize, Vec<f64>)> = screening
-        .candidates
-        .iter()
-        .flat_map(|&term| family.shapes(term).into_iter().map(move |shape| (term, shape)))
-        .collect();
-    all.into_par_iter()
-        .filter_map(|(term, shape)| {
-            let mut columns = family.columns(&fit.model, &fit.prediction, term, &shape);
-            for column in &mut columns {
-                column.iter_mut().zip(screening.weights).for_each(|(value, w)| *value *= w);
-                let before = dot(column, column);
-                own.project_out(column);
-                // What the model can do already is rounding noise after projection.
-                if dot(column, column) < NOTHING_NEW * before {
-                    column.fill(0.0);
+    let mut trials = Vec::new();
+    for (candidate, &term) in screening.candidates.iter().enumerate() {
+        let shapes = family.shapes(term);
+        let columns = family.columns_of_shapes(&fit.model, &fit.prediction, term, &shapes);
+        let of_term: Vec<Option<Trial>> = shapes
+            .into_par_iter()
+            .zip(columns)
+            .map(|(shape, mut columns)| {
+                for column in &mut columns {
+                    free_of(column, screening.weights, own);
                 }
-            }
-            let gram = gram(&columns);
-            let visible =
-                gram.iter().enumerate().any(|(k, row)| row[k] > 0.0 && row[k].is_finite());
-            let positive = positive(family, term);
-            visible.then_some(Trial { term, shape, columns, gram, positive })
-        })
-        .collect()
+                let visible = columns.iter().flatten().any(|value| *value != 0.0);
+                let finite = columns.iter().flatten().all(|value| value.is_finite());
+                let positive = positive(family, term);
+                (visible && finite).then(|| Trial::new(candidate, shape, columns, positive))
+            })
+            .collect();
+        trials.extend(of_term.into_iter().flatten());
+    }
+    trials
+}
+
+/// Weighs a column and takes the model's own freedom out of it; what is only rounding noise then
+/// becomes exactly nothing.
+fn free_of(column: &mut [f64], weights: &[f64], own: &Basis) {
+    column.iter_mut().zip(weights).for_each(|(value, weight)| *value *= weight);
+    let before = dot(column, column);
+    own.project_out(column);
+    if dot(column, column) < NOTHING_NEW * before {
+        column.fill(0.0);
+    }
 }
 
 /// Which amplitudes of a term cannot be negative.
@@ -165,48 +183,83 @@ fn positive<F: ModelFamily + ?Sized>(family: &F, term: usize) -> Vec<bool> {
     if signs.is_empty() { vec![true] } else { signs }
 }
 
-/// The largest share of the squared residual that each candidate removes.
-fn shares(residual: &[f64], own: &Basis, trials: &[Trial], candidates: &[usize]) -> Vec<f64> {
-    let mut rest = residual.to_vec();
-    own.project_out(&mut rest);
-    let total = dot(&rest, &rest).max(f64::MIN_POSITIVE);
-    let mut best = vec![0.0f64; candidates.len()];
-    for trial in trials {
-        if let Some(k) = candidates.iter().position(|&term| term == trial.term) {
-            best[k] = best[k].max(trial.reduction(residual).0 / total);
-        }
-    }
-    best
+/// Fall of each residual's square by each trial: `falls[trial][residual]`. Matrix products, as there
+/// are some thousand columns and two hundred residuals.
+fn falls(trials: &[Trial], residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let points = residuals[0].len();
+    let right = DMatrix::from_fn(points, residuals.len(), |i, k| residuals[k][i]);
+    let chunks: Vec<Vec<Vec<f64>>> = trials
+        .par_chunks(CHUNK)
+        .map(|chunk| {
+            let rows: Vec<&Vec<f64>> = chunk.iter().flat_map(|trial| &trial.columns).collect();
+            let left = DMatrix::from_fn(rows.len(), points, |row, i| rows[row][i]);
+            let moments = left * &right;
+            let mut next = 0;
+            let mut of_trial = |trial: &Trial| -> Vec<f64> {
+                let mine = next..next + trial.columns.len();
+                next = mine.end;
+                let moment =
+                    |k: usize| -> Vec<f64> { mine.clone().map(|row| moments[(row, k)]).collect() };
+                (0..residuals.len()).map(|k| trial.fall(&moment(k))).collect()
+            };
+            chunk.iter().map(&mut of_trial).collect()
+        })
+        .collect();
+    chunks.into_iter().flatten().collect()
 }
 
-fn best_trial<'a>(trials: &'a [Trial], term: usize, residual: &[f64]) -> Option<&'a Trial> {
-    let of_term = || trials.iter().filter(|trial| trial.term == term);
-    let most = of_term().map(|trial| trial.reduction(residual).0).fold(0.0, f64::max);
-    of_term().find(|trial| trial.reduction(residual).0 >= AS_GOOD * most)
+/// For each residual and candidate the largest share of the square that a trial removes.
+fn shares(
+    residuals: &[Vec<f64>],
+    own: &Basis,
+    trials: &[Trial],
+    falls: &[Vec<f64>],
+    candidates: usize,
+) -> Vec<Vec<f64>> {
+    residuals
+        .par_iter()
+        .enumerate()
+        .map(|(k, residual)| {
+            let mut rest = residual.clone();
+            own.project_out(&mut rest);
+            let total = dot(&rest, &rest).max(f64::MIN_POSITIVE);
+            let mut best = vec![0.0f64; candidates];
+            for (trial, falls) in trials.iter().zip(falls) {
+                best[trial.candidate] = best[trial.candidate].max(falls[k] / total);
+            }
+            best
+        })
+        .collect()
 }
 
-/// Largest squared length of a first column over the shapes.
-fn most_visible(trials: &[Trial], term: usize) -> f64 {
-    trials.iter().filter(|t| t.term == term).map(|t| t.gram[0][0]).fold(0.0, f64::max)
+fn best_trial<'a>(trials: &'a [Trial], falls: &[Vec<f64>], candidate: usize) -> Option<&'a Trial> {
+    let of_term = || trials.iter().zip(falls).filter(|(trial, _)| trial.candidate == candidate);
+    let most = of_term().map(|(_, falls)| falls[0]).fold(0.0, f64::max);
+    of_term().find(|(_, falls)| falls[0] >= AS_GOOD * most).map(|(trial, _)| trial)
 }
 
-/// Share of the held-out squared error removed by coefficients estimated on the fitted blocks only,
-/// together with the model's own parameters; and the change of the prediction.
+/// A trial on data that its coefficients were not estimated on.
+struct HeldOut {
+    /// Share of the held-out squared error that it removes.
+    gain: f64,
+    /// Amplitudes from the fitted blocks.
+    amplitude: Vec<f64>,
+    /// See [`Screened::leverage`].
+    leverage: f64,
+}
+
+/// Estimates the coefficients of a trial on the fitted blocks, together with the model's own
+/// parameters, and applies them to the held-out ones.
 fn held_out<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
     screening: &Screening<'_>,
     trial: &Trial,
-    beta_all: &[f64],
-) -> (f64, Vec<f64>) {
-    let points = fit.residual.len();
-    let raw = family.columns(&fit.model, &fit.prediction, trial.term, &trial.shape);
-    let mut change = vec![0.0; points];
-    for (column, beta) in raw.iter().zip(beta_all) {
-        crate::basis::add_scaled(&mut change, *beta, column);
-    }
-    let fitted = screening.split.fit(points);
-    let masked = |column: &[f64], keep: bool| -> Vec<f64> {
+) -> HeldOut {
+    let term = screening.candidates[trial.candidate];
+    let raw = family.columns(&fit.model, &fit.prediction, term, &trial.shape);
+    let fitted = screening.split.fit(fit.residual.len());
+    let part = |column: &[f64], keep: bool| -> Vec<f64> {
         column
             .iter()
             .zip(screening.weights)
@@ -214,70 +267,36 @@ fn held_out<F: ModelFamily + ?Sized>(
             .map(|((value, weight), fit)| if *fit == keep { value * weight } else { 0.0 })
             .collect()
     };
-    let own: Vec<Vec<f64>> = fit.jacobian.iter().map(|column| masked(column, true)).collect();
-    let mut joint = own.clone();
-    joint.extend(raw.iter().map(|column| masked(column, true)));
-    let target = masked(&fit.residual, true);
-    let solve = |columns: &[Vec<f64>], positive: &[bool]| {
-        let moment: Vec<f64> = columns.iter().map(|column| dot(column, &target)).collect();
-        constrained(&gram(columns), &moment, positive)
+    let moment = |columns: &[Vec<f64>], target: &[f64]| -> Vec<f64> {
+        columns.iter().map(|column| dot(column, target)).collect()
     };
-    let without = solve(&own, &vec![false; own.len()]);
-    let mut positive = vec![false; own.len()];
-    positive.extend(&trial.positive);
-    let with = solve(&joint, &positive);
-    let left = |coefficients: &[f64]| {
-        let mut rest = masked(&fit.residual, false);
-        for (column, beta) in fit.jacobian.iter().chain(&raw).zip(coefficients) {
-            crate::basis::add_scaled(&mut rest, -*beta, &masked(column, false));
+    let own: Vec<Vec<f64>> = fit.jacobian.iter().map(|column| part(column, true)).collect();
+    let basis = Basis::of(&own);
+    let mut columns: Vec<Vec<f64>> = raw.iter().map(|column| part(column, true)).collect();
+    for column in &mut columns {
+        free_of(column, &vec![1.0; fitted.len()], &basis);
+    }
+    let target = part(&fit.residual, true);
+    let products = gram(&columns);
+    let amplitude = constrained(&products, &moment(&columns, &target), &trial.positive);
+    // The model's own parameters adapt to what is left, with and without the trial.
+    let own_gram = gram(&own);
+    let all: Vec<usize> = (0..own.len()).collect();
+    let left = |amplitude: &[f64]| {
+        let (mut inside, mut outside) = (target.clone(), part(&fit.residual, false));
+        for (column, beta) in raw.iter().zip(amplitude) {
+            add_scaled(&mut inside, -*beta, &part(column, true));
+            add_scaled(&mut outside, -*beta, &part(column, false));
         }
-        dot(&rest, &rest)
+        let adapted = solve(&own_gram, &moment(&own, &inside), &all);
+        for (column, beta) in fit.jacobian.iter().zip(&adapted) {
+            add_scaled(&mut outside, -*beta, &part(column, false));
+        }
+        dot(&outside, &outside)
     };
-    let before = left(&without);
-    let gain = if before > 0.0 { 1.0 - left(&with) / before } else { 0.0 };
-    (gain, change)
-}
-
-/// Gains measured and on placebos, made comparable between candidates of different freedom by the
-/// mean and spread that each has on placebos.
-struct Evidence {
-    centre: Vec<f64>,
-    spread: Vec<f64>,
-    measured: Vec<f64>,
-    largest: Vec<f64>,
-}
-
-impl Evidence {
-    fn new(measured: &[f64], null: &[Vec<f64>]) -> Self {
-        let count = null.len() as f64;
-        let mean = |k: usize| null.iter().map(|row| row[k]).sum::<f64>() / count;
-        let centre: Vec<f64> = (0..measured.len()).map(mean).collect();
-        let spread: Vec<f64> = (0..measured.len())
-            .map(|k| {
-                let square: f64 = null.iter().map(|row| (row[k] - centre[k]).powi(2)).sum();
-                (square / count).sqrt().max(1e-12)
-            })
-            .collect();
-        let standard = |row: &[f64], k: usize| -> f64 { (row[k] - centre[k]) / spread[k] };
-        let largest = null
-            .iter()
-            .map(|row| (0..row.len()).map(|k| standard(row, k)).fold(f64::MIN, f64::max))
-            .collect();
-        let measured = (0..measured.len()).map(|k| standard(measured, k)).collect();
-        Self { centre, spread, measured, largest }
-    }
-
-    fn p_value(&self, k: usize) -> f64 {
-        placebo::p_value(self.measured[k], &self.largest)
-    }
-
-    /// The share that candidate `k` must remove to be among the largest 5 % of all placebos.
-    fn needed(&self, k: usize) -> f64 {
-        let mut sorted = self.largest.clone();
-        sorted.sort_unstable_by(f64::total_cmp);
-        let critical = sorted[(sorted.len() * 95 / 100).min(sorted.len() - 1)];
-        self.centre[k] + critical * self.spread[k]
-    }
+    let before = left(&vec![0.0; raw.len()]);
+    let gain = if before > 0.0 { 1.0 - left(&amplitude) / before } else { 0.0 };
+    HeldOut { gain, amplitude, leverage: products[0][0] }
 }
 
 /// The model with the screened candidate added as it was screened.

@@ -53,15 +53,15 @@ pub struct OutputArgs {
     /// Write the results as JSON; `-` for the terminal
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write a report with plots as one HTML file
+    /// Write a report with plots as one HTML file; `-` for the terminal
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
 }
 
 impl OutputArgs {
-    /// Whether standard output belongs to the JSON.
-    pub fn json_on_stdout(&self) -> bool {
-        self.json.as_ref().is_some_and(|path| path.as_os_str() == "-")
+    /// Whether standard output belongs to one of the files.
+    pub fn own_stdout(&self) -> bool {
+        [&self.json, &self.html].into_iter().flatten().any(|path| path.as_os_str() == "-")
     }
 }
 

@@ -50,11 +50,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let report =
         Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data };
     let files = report.save(&args.results)?;
-    if global.quiet || args.results.json_on_stdout() {
+    if global.quiet || args.results.own_stdout() {
         return Ok(());
     }
     let text = heading(&format!("Errors of {effects}"))
-        + &output::ladder(&discovery)
+        + &output::ladder(&discovery, "the model")
         + &heading("Where it fails")
         + &output::regimes(&discovery.regimes)
         + "\n"

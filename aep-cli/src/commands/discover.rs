@@ -58,7 +58,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         Some(path) => args.mapping.read(path)?,
         None => crate::example::load()?,
     };
-    let quiet = global.quiet || args.results.json_on_stdout();
+    let quiet = global.quiet || args.results.own_stdout();
     let data = check(&loaded.recording);
     if !quiet {
         output::print(&output::data_check(&loaded, &data))?;
@@ -123,7 +123,7 @@ fn story(discovery: &Discovery) -> String {
         text += &output::parameters(last);
     }
     text += &heading("The ladder");
-    text += &output::ladder(discovery);
+    text += &output::ladder(discovery, "base model");
     text + &output::verdict(discovery)
 }
 

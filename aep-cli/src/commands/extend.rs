@@ -53,7 +53,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     effects.push(added.clone());
     let loaded = args.data.read()?;
-    let quiet = global.quiet || args.results.json_on_stdout();
+    let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth)?;
@@ -79,7 +79,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         return Ok(());
     }
     let text = heading(&format!("Before and after {added}"))
-        + &output::ladder(&discovery)
+        + &output::ladder(&discovery, "before")
         + &heading("Parameters")
         + &output::parameters(&last)
         + &heading("Where it fails now")

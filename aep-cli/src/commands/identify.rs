@@ -49,7 +49,7 @@ Examples:
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let effects = args.effects.checked()?;
     let loaded = args.data.read()?;
-    let quiet = global.quiet || args.results.json_on_stdout();
+    let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth)?;
@@ -75,7 +75,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let text = heading(&title)
         + &output::parameters(&rung)
         + &heading("Errors")
-        + &output::ladder(&discovery)
+        + &output::ladder(&discovery, "the model")
         + &files;
     output::print(&text)
 }

@@ -45,7 +45,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
     let settings = args.run.settings(effects)?;
     let loaded = args.data.read()?;
-    let quiet = global.quiet || args.results.json_on_stdout();
+    let quiet = global.quiet || args.results.own_stdout();
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth)?;

@@ -60,8 +60,8 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// The rungs with their errors.
-pub fn ladder(discovery: &Discovery) -> String {
+/// The rungs with their errors; `first` is what the lowest one is called.
+pub fn ladder(discovery: &Discovery, first: &str) -> String {
     let names = words::errors(discovery);
     let Some(main) = names.first() else {
         return String::new();
@@ -83,10 +83,16 @@ pub fn ladder(discovery: &Discovery) -> String {
             columns.push(("fitted", Align::Right));
         }
     }
-    columns.push(("p-value", Align::Right));
+    let tested = discovery.ladder.iter().any(|rung| rung.p_value.is_some());
+    if tested {
+        columns.push(("p-value", Align::Right));
+    }
     let mut table = Table::new(&columns);
     for rung in &discovery.ladder {
-        table.row(ladder_row(rung, &names, largest, fitted));
+        let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
+        let p_value = rung.p_value.map_or_else(|| "-".to_owned(), words::p_value);
+        let cells = ladder_cells(rung, &names, largest, fitted);
+        table.row(std::iter::once(name).chain(cells).chain(tested.then_some(p_value)));
     }
     let mut text = table.text();
     if let Some(floor) = words::floor(discovery, main) {
@@ -99,10 +105,16 @@ pub fn ladder(discovery: &Discovery) -> String {
     text
 }
 
-fn ladder_row(rung: &Rung, names: &[words::ErrorName], largest: f64, fitted: bool) -> Vec<String> {
+/// Bar and errors of a rung.
+fn ladder_cells(
+    rung: &Rung,
+    names: &[words::ErrorName],
+    largest: f64,
+    fitted: bool,
+) -> Vec<String> {
     let error = |name: &words::ErrorName| rung.error.get(&name.key);
     let main = error(&names[0]).map_or(0.0, |error| error.validation);
-    let mut cells = vec![words::rung(rung), bar(main / largest, BAR)];
+    let mut cells = vec![bar(main / largest, BAR)];
     for name in names {
         let text = |pick: fn(&SplitError) -> f64| {
             error(name).map_or_else(|| "-".to_owned(), |error| name.value(pick(error)))
@@ -112,7 +124,6 @@ fn ladder_row(rung: &Rung, names: &[words::ErrorName], largest: f64, fitted: boo
             cells.push(text(|error| error.fit));
         }
     }
-    cells.push(rung.p_value.map_or_else(|| "-".to_owned(), words::p_value));
     cells
 }
 

@@ -62,8 +62,8 @@ fn the_json_keeps_the_contract() {
 #[test]
 fn threads_change_nothing() {
     let desk = Desk::new();
-    desk.aep("discover -q --json one.json --threads 1").done();
-    desk.aep("discover -q --json two.json --threads 2").done();
+    desk.aep("discover -q --most 1 --json one.json --threads 1").done();
+    desk.aep("discover -q --most 1 --json two.json --threads 2").done();
     let result = |name: &str| {
         let mut json = desk.json(name);
         json["wall_s"] = 0.into();
@@ -107,8 +107,8 @@ fn flags_read_other_columns_units_and_gains() {
     desk.write("volts.csv", format!("t;u_V;x\n{}\n", rows.join("\n")));
     let flags =
         "--time-unit ms --force u_V --force-gain 35.15 --position-unit mm --hold zero-order";
-    desk.aep(&format!("discover volts.csv -q --json flags.json {flags}")).done();
-    desk.aep("discover c/recording.csv -q --json plain.json").done();
+    desk.aep(&format!("identify volts.csv -q --effects coulomb --json flags.json {flags}")).done();
+    desk.aep("identify c/recording.csv -q --effects coulomb --json plain.json").done();
     let mass =
         |name: &str| desk.json(name)["ladder"][0]["parameters"]["mass"]["value"].as_f64().unwrap();
     assert!((mass("flags.json") / mass("plain.json") - 1.0).abs() < 1e-6);

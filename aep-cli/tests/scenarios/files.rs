@@ -6,7 +6,7 @@ use crate::harness::Desk;
 fn a_file_that_cannot_be_written_is_named_and_nothing_is_destroyed() {
     let desk = Desk::new();
     desk.challenge("nothing", 1, "c");
-    desk.aep("discover c/recording.csv -q --json nowhere/out.json").refused(&[
+    desk.aep("identify c/recording.csv -q --effects coulomb --json nowhere/out.json").refused(&[
         "error: cannot write the file",
         "  nowhere/out.json",
         "hint: ",
@@ -21,7 +21,7 @@ fn a_full_disk_is_an_error_not_half_a_file() {
     let desk = Desk::new();
     desk.challenge("nothing", 1, "c");
     // A device that is always full.
-    desk.aep("discover c/recording.csv -q --json /dev/full")
+    desk.aep("identify c/recording.csv -q --effects coulomb --json /dev/full")
         .refused(&["error: cannot write the file", "/dev/full"]);
 }
 

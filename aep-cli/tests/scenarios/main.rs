@@ -6,3 +6,4 @@ mod files;
 mod harness;
 mod help;
 mod loop_by_hand;
+mod optimizers;

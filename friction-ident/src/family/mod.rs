@@ -19,13 +19,19 @@ use missing_physics::report::{Plot, SplitError};
 use missing_physics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
 
+use rayon::prelude::*;
+
 pub use preparation::{PreparationError, Prepared};
 pub use words::engineering;
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
+use crate::effects::ripple::Sweep;
 use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
+
+/// Periods per sweep of a ripple's trials.
+const SWEEP: usize = 64;
 
 /// What can be chosen.
 #[derive(Clone, Default)]
@@ -218,6 +224,27 @@ impl FrictionFamily {
             .collect()
     }
 
+    /// Columns of ripples whose periods are evenly spaced in spatial frequency, as
+    /// [`limits::periods`] makes them.
+    fn ripples(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
+        let frequency = |k: usize| 1.0 / periods[k][0];
+        let step = if periods.len() > 1 { frequency(1) - frequency(0) } else { 0.0 };
+        let chunks: Vec<Vec<Vec<Vec<f64>>>> = (0..periods.len())
+            .step_by(SWEEP)
+            .collect::<Vec<_>>()
+            .into_par_iter()
+            .map(|first| {
+                let mut sweep = Sweep::new(&self.prepared.position, frequency(first), step);
+                let compare = |columns: [Vec<f64>; 4]| -> Vec<Vec<f64>> {
+                    columns.iter().map(|column| self.prepared.compare(column)).collect()
+                };
+                let count = SWEEP.min(periods.len() - first);
+                (0..count).map(|_| compare(sweep.advance())).collect()
+            })
+            .collect();
+        chunks.into_iter().flatten().collect()
+    }
+
     fn is_simple(&self, term: usize) -> bool {
         term > 0 && {
             let about = self.effects[term - 1].about();
@@ -292,6 +319,21 @@ impl ModelFamily for FrictionFamily {
             }
             _ => missing_physics::shapes::columns(self, model, prediction, term, shape),
         }
+    }
+
+    fn columns_of_shapes(
+        &self,
+        model: &Fitted,
+        prediction: &[f64],
+        term: usize,
+        shapes: &[Vec<f64>],
+    ) -> Vec<Vec<Vec<f64>>> {
+        if self.terms[term].name == "ripple" {
+            // A force that depends on position alone is the same with any contact; what a drive does
+            // to it is a few degrees of phase, which the refinement after the screening mends.
+            return self.ripples(shapes);
+        }
+        shapes.par_iter().map(|shape| self.columns(model, prediction, term, shape)).collect()
     }
 
     fn coordinates(&self) -> &[Coordinate] {

@@ -1,0 +1,55 @@
+//! Comparing optimizers and reproducing the paper's figures on test functions.
+
+use crate::harness::Desk;
+
+#[test]
+fn optimizers_are_compared_with_curves_trials_and_a_plot() {
+    let desk = Desk::new();
+    let line = "optimize rosenbrock --dimension 3 --algorithm aep-practical,de --trials 8 \
+                --evaluations 12000 -o out --json -";
+    let run = desk.aep(&format!("{line} --quiet"));
+    let json: serde_json::Value = serde_json::from_str(run.done()).unwrap();
+    assert_eq!(json["summaries"][0]["method"], "aep-practical");
+    assert_eq!(json["summaries"][0]["successes"], 8);
+    assert!(json["first_against"][1]["p_value"].is_number());
+    assert!(desk.read("out/curves.csv").starts_with("optimizer,evaluations,mean,median,"));
+    assert_eq!(desk.read("out/trials.csv").lines().count(), 1 + 2 * 8);
+    assert!(desk.read("out/curves.svg").contains("aep-practical"));
+}
+
+#[test]
+fn a_comparison_can_be_repeated_whatever_the_number_of_threads() {
+    let desk = Desk::new();
+    let line = "optimize f2 --shift --trials 4 --evaluations 2000 -q";
+    desk.aep(&format!("{line} --threads 1 -o one")).done();
+    desk.aep(&format!("{line} --threads 3 -o three")).done();
+    assert_eq!(desk.read("one/trials.csv"), desk.read("three/trials.csv"));
+}
+
+#[test]
+fn unknown_names_are_refused_with_those_there_are() {
+    let desk = Desk::new();
+    desk.aep("optimize f9").refused(&["no test function 'f9'", "hint: there are: f1,"]);
+    desk.aep("optimize f1 --algorithm ga").refused(&["no optimizer 'ga'", "cma-es"]);
+    desk.aep("optimize f5 --dimension 7").refused(&["defined for 2 components", "--dimension"]);
+    desk.aep("optimize f1 --algorithm de --population 2").refused(&["four individuals"]);
+    desk.aep("reproduce fig99").refused(&["no figure 'fig99'", "fig2"]);
+}
+
+#[test]
+fn test_functions_are_listed_and_told_one_by_one() {
+    let desk = Desk::new();
+    assert!(desk.aep("problems").done().contains("rastrigin"));
+    assert!(desk.aep("problems f5").done().contains("0.998"));
+}
+
+#[test]
+fn a_figure_comes_with_its_curves_its_plot_and_a_verdict_on_each_statement() {
+    let desk = Desk::new();
+    let run = desk.aep("reproduce fig4 -o paper --trials 10");
+    assert!(run.done().contains("0 after about 40 generations"));
+    assert!(desk.read("paper/fig4.csv").starts_with("line,generation,mean,"));
+    assert!(desk.read("paper/fig4.svg").starts_with("<svg"));
+    assert!(desk.read("paper/fig4-readings.csv").contains("standard deviation beta f"));
+    assert_eq!(desk.read("paper/claims.csv").lines().count(), 4);
+}
