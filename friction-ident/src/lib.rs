@@ -23,6 +23,7 @@ pub mod effects;
 pub mod family;
 pub mod identify;
 pub mod model;
+pub mod paper;
 pub mod reference;
 pub mod simulator;
 pub mod windows;

@@ -138,6 +138,10 @@ impl Element for Presliding {
     fn force(&self, _p: &[f64], state: &[f64]) -> Option<f64> {
         Some(state[0])
     }
+
+    fn sliding(&self, _p: Parameters<'_>, level: &[f64], state: &[f64], sliding: &mut [f64]) {
+        sliding.copy_from_slice(&state[level.len()..]);
+    }
 }
 
 /// What the contact holds at the start: a level that fell takes a loaded contact down with it.

@@ -1,14 +1,12 @@
 //! One step of all lanes.
 
 use super::plants::Plants;
+use crate::effects::Parameters;
 use crate::simd::{sign, vectorised};
 
 /// Events within one step after which a lane rests for what is left of it. A step has two in a
 /// reversal; more come from a step that is too long for the plant.
 const MAX_PIECES: usize = 6;
-
-/// Utilisation of a contact from which it counts as sliding: some contacts only approach 1.
-const BROKEN: f64 = 0.999;
 
 impl Plants {
     /// Advances every lane by its `duration` (s) under its `command`, the mean over the step.
@@ -186,23 +184,11 @@ impl Plants {
     fn watch_contact(&mut self) {
         let watched = !self.memories.is_empty() || self.reads_dwell;
         let Some(k) = self.contact.filter(|_| watched) else { return };
-        let active = &self.effects[k];
-        let states = active.element.len() / self.lanes.max(1);
-        let mut lane = vec![0.0; states];
-        for i in 0..self.lanes {
-            for (state, slot) in
-                lane.iter_mut().zip(active.element.iter().skip(i).step_by(self.lanes))
-            {
-                *state = *slot;
-            }
-            let force = active.effect.element().and_then(|e| e.force(&[], &lane)).unwrap_or(0.0);
-            let slides = force.abs() >= BROKEN * self.scratch.level[i];
-            if !slides && self.sliding[i] > 0.0 {
-                self.dwell[i] = 0.0;
-            }
-            self.dwell[i] += if slides { 0.0 } else { self.scratch.left[i] };
-            self.sliding[i] = f64::from(u8::from(slides));
-        }
+        let (active, s) = (&self.effects[k], &mut self.scratch);
+        let Some(element) = active.effect.element() else { return };
+        let p = Parameters::new(&active.values, self.lanes);
+        element.sliding(p, &s.level, &active.element, &mut s.taken);
+        count_rest(&s.taken, &s.left, &mut self.sliding, &mut self.dwell);
         if !self.memories.is_empty() {
             let s = &mut self.scratch;
             s.taken.copy_from_slice(&s.left);
@@ -216,6 +202,18 @@ vectorised! {
     fn advance(duration: &[f64], time: &mut [f64]) {
         for (time, duration) in time.iter_mut().zip(duration) {
             *time += duration;
+        }
+    }
+
+    /// Time at rest; it begins anew where a slide ends.
+    fn count_rest(slides: &[f64], left: &[f64], sliding: &mut [f64], dwell: &mut [f64]) {
+        let n = slides.len();
+        let (left, sliding, dwell) = (&left[..n], &mut sliding[..n], &mut dwell[..n]);
+        for i in 0..n {
+            let rests = slides[i] == 0.0;
+            let before = if rests && sliding[i] > 0.0 { 0.0 } else { dwell[i] };
+            dwell[i] = before + if rests { left[i] } else { 0.0 };
+            sliding[i] = slides[i];
         }
     }
 
