@@ -173,3 +173,50 @@ pub fn identify(
 ) -> Result<Outcome, IdentifyError> {
     task.run(method, Budget::generations(generations), seed)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::intervals;
+    use aep_core::Problem;
+
+    #[test]
+    fn the_printed_mass_is_33_kg_and_the_contact_resonates_at_73_hz() {
+        let model = table().unwrap();
+        assert!((model.mass() - 33.3).abs() < 0.1);
+        let stiffness = model.get("presliding:static.k_t").unwrap();
+        let resonance = (stiffness / model.mass()).sqrt() / std::f64::consts::TAU;
+        assert!((resonance - 73.0).abs() < 0.5, "{resonance}");
+    }
+
+    #[test]
+    fn the_training_data_stick_slide_and_move_fast() {
+        let data = training_data(&table().unwrap(), SAMPLE_TIME).unwrap();
+        assert_eq!(data.segments().len(), 4);
+        let position = data.require("position").unwrap();
+        let spread = |b: usize| {
+            let x = &position[data.segments()[b].clone()];
+            x.iter().fold(f64::MIN, |h, x| h.max(*x)) - x.iter().fold(f64::MAX, |l, x| l.min(*x))
+        };
+        assert!(spread(2) < spread(1) && spread(1) < spread(0) && spread(0) < 0.1 * spread(3));
+        let slow = &position[data.segments()[2].clone()];
+        let stands = slow.windows(20).filter(|w| w[0] == w[19]).count();
+        assert!((50..1900).contains(&stands), "{stands}");
+    }
+
+    #[test]
+    fn the_truth_fits_and_gamma_is_not_to_be_known() {
+        let data = training_data(&table().unwrap(), SAMPLE_TIME).unwrap();
+        let task = task(&data, SAMPLE_TIME).unwrap();
+        let truth = task.start();
+        assert!(task.evaluate(&truth) < 1e-8);
+        let found = intervals(&task, &truth);
+        for (parameter, interval) in PARAMETERS.iter().zip(&found) {
+            match parameter.symbol {
+                "gamma" => assert!(!interval.identifiable, "{interval:?}"),
+                "m_e" | "F_C" | "F_v" | "k_t" => assert!(interval.identifiable, "{interval:?}"),
+                _ => {}
+            }
+        }
+    }
+}
