@@ -1,6 +1,7 @@
 //! One cell of the matrix: many seeds of one hidden effect at one level.
 
 use friction_ident::family::{FrictionFamily, Options};
+use missing_physics::discover::terms;
 use missing_physics::report::Verdict;
 use missing_physics::{Discovery, ModelFamily, Settings, discover, search};
 
@@ -75,9 +76,9 @@ pub struct Outcome {
 /// Root mean square of the largest 5 % of the residual that the base model leaves.
 fn top(table: &Table, excitation: Excitation) -> Option<f64> {
     let family = FrictionFamily::new(&table.record(excitation).ok()?, &Options::default()).ok()?;
-    let terms = missing_physics::discover::terms(&family, &BASE.map(str::to_owned)).ok()?;
+    let base = terms(&family, &BASE.map(str::to_owned)).ok()?;
     let weights = vec![1.0; family.target().len()];
-    let mut squares: Vec<f64> = search::identify(&family, &terms, &weights, 1)
+    let mut squares: Vec<f64> = search::identify(&family, &base, &weights, 1)
         .fit
         .residual
         .iter()
@@ -135,10 +136,11 @@ pub fn run(
 }
 
 fn judge(found: &Discovery, kinds: &[Hidden], names: &[&str]) -> Answer {
-    let listed = |effect: &String| names.contains(&effect.as_str());
+    let stem = |effect: &str| effect.split(':').next().unwrap_or_default().to_owned();
+    let listed = |effect: &String| names.contains(&stem(effect).as_str());
     let in_set =
         found.ambiguous.iter().any(|set| set.effects.len() <= 3 && set.effects.iter().any(listed));
-    let complete = names.iter().all(|name| found.added.iter().any(|added| added == name));
+    let complete = names.iter().all(|name| found.added.iter().any(|added| stem(added) == *name));
     match (names.is_empty(), found.added.first()) {
         (false, Some(first)) if names.len() == 1 && listed(first) => Answer::First,
         (false, Some(_)) if names.len() > 1 && complete => Answer::First,
@@ -157,11 +159,11 @@ fn judge(found: &Discovery, kinds: &[Hidden], names: &[&str]) -> Answer {
 /// Held-out error of the discovered model over that of the true structure.
 fn ratio(family: &FrictionFamily, found: &Discovery, names: &[&str]) -> Option<f64> {
     let all: Vec<String> = BASE.iter().chain(names).map(|name| (*name).to_owned()).collect();
-    let terms = missing_physics::discover::terms(family, &all).ok()?;
+    let full = terms(family, &all).ok()?;
     let split = missing_physics::split::Split::new(family.target().len(), family.blocks());
     let weights: Vec<f64> =
         split.fit(family.target().len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
-    let truth = search::identify(family, &terms, &weights, 1).fit;
+    let truth = search::identify(family, &full, &weights, 1).fit;
     let error = found.ladder.last()?.error.get("force_rms_N")?.validation;
     Some(error / split.rms(&truth.residual).validation)
 }
