@@ -57,7 +57,7 @@ fn model(i: usize) -> Model {
 }
 
 /// The same step as the simulator's, for one plant with everything known in advance.
-#[inline(always)]
+#[inline]
 fn step(p: &Plant, force: f64, x: f64, v: f64, slope: f64, held: f64) -> (f64, f64, f64, f64) {
     let predicted = v + 0.5 * STEP * slope;
     let square = p.speed * p.speed;
@@ -118,7 +118,7 @@ impl Lanes {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn advance(&mut self, force: f64) {
         let n = self.x.len();
         let [mass, coulomb, viscous, hump, speed, stiffness] =
@@ -142,13 +142,17 @@ impl Lanes {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
 fn kernel_avx512(lanes: &mut Lanes, commands: &[f64]) {
-    commands.iter().for_each(|force| lanes.advance(*force));
+    for force in commands {
+        lanes.advance(*force);
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn kernel_avx2(lanes: &mut Lanes, commands: &[f64]) {
-    commands.iter().for_each(|force| lanes.advance(*force));
+    for force in commands {
+        lanes.advance(*force);
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -165,13 +169,17 @@ fn kernel(lanes: &mut Lanes, commands: &[f64]) {
         // SAFETY: detected above.
         unsafe { kernel_avx2(lanes, commands) }
     } else {
-        commands.iter().for_each(|force| lanes.advance(*force));
+        for force in commands {
+            lanes.advance(*force);
+        }
     }
 }
 
 #[cfg(not(target_arch = "x86_64"))]
 fn kernel(lanes: &mut Lanes, commands: &[f64]) {
-    commands.iter().for_each(|force| lanes.advance(*force));
+    for force in commands {
+        lanes.advance(*force);
+    }
 }
 
 fn lockstep(plants: &mut Plants, commands: &[f64]) -> f64 {

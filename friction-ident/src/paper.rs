@@ -153,9 +153,9 @@ pub fn training_data(table: &Model, max_step: f64) -> Result<Recording, ClosedLo
 pub fn task(recording: &Recording, max_step: f64) -> Result<Identification<'_>, IdentifyError> {
     let free: Vec<Free> = PARAMETERS
         .iter()
-        .map(|p| match p.logarithmic {
-            true => Free::log(p.address, p.bounds.0, p.bounds.1),
-            false => Free::linear(p.address, p.bounds.0, p.bounds.1),
+        .map(|p| {
+            let free = if p.logarithmic { Free::log } else { Free::linear };
+            free(p.address, p.bounds.0, p.bounds.1)
         })
         .collect();
     Identification::new(&table()?, recording, &free, Horizon::FreeRun { max_step })

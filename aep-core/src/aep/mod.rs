@@ -89,7 +89,7 @@ impl Aep {
     pub fn practical() -> Self {
         Self {
             beta1: 1.0,
-            beta2: 0.4,
+            beta2: 0.5,
             spread: Spread::StandardDeviation,
             division: Division::Whole,
             step_scale: StepScale::Constant,

@@ -1,0 +1,6 @@
+//! How well discovery names a hidden effect: recordings made without the library's laws, cells of a
+//! matrix, and what counts as a hit.
+
+pub mod cell;
+pub mod motion;
+pub mod table;
