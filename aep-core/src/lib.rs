@@ -30,6 +30,7 @@
 //! |---|---|
 //! | [`Aep::practical`] | real tasks: any smallest cost, parameters that differ in magnitude |
 //! | [`Aep::paper`] | the paper's rules, for costs whose smallest value is 0 |
+//! | [`Restarting`] | any of them again and again where runs get stuck in local minima |
 //! | [`MetaEp::paper`], [`MetaEp::practical`] | the paper's yardstick |
 //! | [`De`] | yardstick: differential evolution, strong on separable and multimodal costs |
 //! | [`CmaEs`] | yardstick: covariance matrix adaptation, strong on ill-conditioned costs |
@@ -107,6 +108,7 @@ mod points;
 mod population;
 mod problem;
 pub mod random;
+mod restart;
 mod scalar;
 mod selection;
 mod trace;
@@ -135,6 +137,7 @@ pub use points::{Batch, Points};
 pub use population::{Individual, Population};
 pub use problem::{Errors, FallibleProblem, FnProblem, Problem};
 pub use random::{Purpose, Stream, Streams};
+pub use restart::Restarting;
 pub use scalar::Scalar;
 pub use selection::{OneToOne, Selection, Ties, Tournament};
 pub use trace::{Trace, TraceFormat};

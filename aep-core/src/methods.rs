@@ -1,6 +1,6 @@
 //! The methods by name, for command lines and comparisons.
 
-use crate::{Aep, CmaEs, De, MetaEp, Method};
+use crate::{Aep, CmaEs, De, MetaEp, Method, Restarting};
 
 /// A method that can be asked for by name.
 #[derive(Clone, Copy)]
@@ -24,6 +24,11 @@ pub const ALL: &[Named] = &[
         name: "aep-practical",
         summary: "AEP for real costs: steps from the population's covariance, adoption by age",
         build: |count| sized(count, Aep::practical(), Aep::with_population),
+    },
+    Named {
+        name: "aep-practical-restarts",
+        summary: "aep-practical, restarted with twice the population whenever it is stuck",
+        build: restarting,
     },
     Named {
         name: "meta-ep",
@@ -55,6 +60,13 @@ pub const ALL: &[Named] = &[
 /// The method called `name`.
 pub fn find(name: &str) -> Option<&'static Named> {
     ALL.iter().find(|method| method.name == name)
+}
+
+/// From `count` individuals on, doubled at each restart.
+fn restarting(count: usize) -> Box<dyn Method> {
+    let first = if count == 0 { 40 } else { count };
+    let resize = move |aep: Aep, doubled: usize| aep.with_population(doubled / 40 * first);
+    Box::new(Restarting::doubling(Aep::practical(), resize))
 }
 
 fn sized<M: Method + 'static>(

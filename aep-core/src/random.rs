@@ -28,6 +28,8 @@ pub enum Purpose {
     Selection = 4,
     /// Seeds of trials.
     Trial = 5,
+    /// Seeds of restarted runs.
+    Restart = 6,
 }
 
 /// All the streams of one generation for one purpose.

@@ -21,6 +21,7 @@ fn methods() -> Vec<Box<dyn Method>> {
         Box::new(MetaEp::practical()),
         Box::new(De::default()),
         Box::new(CmaEs::default()),
+        (aep_core::methods::find("aep-practical-restarts").unwrap().build)(20),
     ]
 }
 

@@ -217,8 +217,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             if self.ladder.added().len() >= self.settings.most || self.stopped() {
                 break;
             }
-            let Some((chosen, better)) = self.best_addition(&last_screening) else { break };
-            self.add(&chosen, better);
+            let Some(chosen) = self.best_addition(&last_screening) else { break };
+            self.add(chosen);
             self.drop_idle();
         }
         self.observer.event(&Event::Finishing);
@@ -232,32 +232,40 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     fn screen(&mut self) -> Vec<Screened> {
         let candidates: Vec<usize> = (0..self.family.terms().len())
-            .filter(|k| !self.fit.model.terms.contains(k) && !self.excluded.contains(k))
+            .filter(|&term| {
+                self.family.joins(&self.fit.model, term)
+                    && self.family.form_of(term).is_none()
+                    && !self.excluded.contains(&term)
+            })
             .collect();
         let rung = self.ladder.added().len() + 1;
         self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
         let weights = weights(self.family.doubt(), &self.fit.residual);
-        screen::screen(
-            self.family,
-            &self.fit,
-            &Screening {
-                candidates: &candidates,
-                weights: &weights,
-                split: &self.split,
-                motion: &self.motion,
-                seed: self.settings.seed.wrapping_add(rung as u64),
-            },
-        )
+        screen::screen(self.family, &self.fit, &self.screening(&candidates, &weights))
     }
 
-    /// The candidate that, re-identified with the whole model, leaves the smallest held-out error.
-    fn best_addition(&mut self, screened: &[Screened]) -> Option<(Screened, Fit)> {
+    fn screening<'b>(&'b self, candidates: &'b [usize], weights: &'b [f64]) -> Screening<'b> {
+        let rung = self.ladder.added().len() as u64 + 1;
+        Screening {
+            candidates,
+            weights,
+            split: &self.split,
+            motion: &self.motion,
+            seed: self.settings.seed.wrapping_add(rung),
+        }
+    }
+
+    /// The candidate that, re-identified with the whole model, leaves the smallest error, of those that
+    /// lower the held-out error.
+    /// None where a plain structure along time explains more than any candidate: then no effect of
+    /// the library is at work, but something that happens at its own time.
+    fn best_addition(&mut self, screened: &[Screened]) -> Option<Tried> {
         let before = self.split.rms(&self.fit.residual).validation;
         let enough = before * (1.0 - self.settings.least_gain).sqrt();
         let likely = screened
             .iter()
             .filter(|c| c.p_value <= self.settings.alpha && c.gain >= self.settings.least_gain);
-        let mut tried: Vec<(Screened, Fit, f64)> = Vec::new();
+        let mut tried: Vec<Tried> = Vec::new();
         for candidate in likely.take(MOST_TRIED) {
             if self.stopped() {
                 break;
@@ -267,25 +275,73 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 gain: candidate.gain,
                 p_value: candidate.p_value,
             });
-            let fit = self.with(candidate);
-            let error = self.split.rms(&fit.residual).validation;
-            if error < enough && self.confirmed(&fit) {
-                tried.push((candidate.clone(), fit, error));
+            let main = self.tried(candidate.term, &candidate.values, candidate.p_value);
+            let best = self.best_form(main);
+            let held_out = self.split.rms(&best.fit.residual).validation;
+            if held_out < enough && self.confirmed(&best.fit) {
+                tried.push(best);
             }
         }
-        tried.sort_by(|a, b| a.2.total_cmp(&b.2));
-        let best = tried.first()?.2;
-        let rivals = tried[1..]
-            .iter()
-            .filter(|(_, _, error)| {
-                // What the rival leaves more than the best, as a share of what the best removed.
-                error.powi(2) - best.powi(2) < RIVAL * (before.powi(2) - best.powi(2))
+        tried.sort_by(|a, b| a.square.total_cmp(&b.square));
+        let before = square(&self.fit);
+        let chosen = Self::simplest(&tried, before)?;
+        if self.in_time(1.0 - tried[chosen].square / before) {
+            return None;
+        }
+        let best = tried.swap_remove(chosen);
+        let rivals = tried.iter().filter(|rival| as_good(rival, &best, before));
+        self.ladder.rivals(best.term, rivals.map(|rival| rival.term).collect());
+        Some(best)
+    }
+
+    /// Of the best candidate and those that are as good the one with the fewest parameters.
+    fn simplest(tried: &[Tried], before: f64) -> Option<usize> {
+        let best = tried.first()?;
+        let parameters = |k: &usize| tried[*k].fit.model.values.len();
+        (0..tried.len())
+            .filter(|&k| k == 0 || as_good(&tried[k], best, before))
+            .min_by_key(parameters)
+    }
+
+    /// A term re-identified with the whole model, its shapes searched around `values`.
+    fn tried(&self, term: usize, values: &[f64], p_value: f64) -> Tried {
+        let start =
+            search::shaped(self.family, &self.fit, term, values, &self.fitted, self.settings.seed);
+        let fit = fit::refine(self.family, start, &self.fitted);
+        Tried { term, square: square(&fit), fit, p_value }
+    }
+
+    /// The main form of an effect, or another one that is clearly better.
+    fn best_form(&self, main: Tried) -> Tried {
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let least = main.square * BETTER_FORM;
+        (0..self.family.terms().len())
+            .filter(|&form| self.family.form_of(form) == Some(main.term))
+            .filter_map(|form| {
+                let screening = self.screening(&[], &weights);
+                let values = screen::best_values(self.family, &self.fit, &screening, form)?;
+                Some(self.tried(form, &values, main.p_value))
             })
-            .map(|(candidate, _, _)| candidate.term)
-            .collect();
-        self.ladder.rivals(tried[0].0.term, rivals);
-        let (candidate, fit, _) = tried.swap_remove(0);
-        Some((candidate, fit))
+            .filter(|form| form.square < least)
+            .min_by(|a, b| a.square.total_cmp(&b.square))
+            .unwrap_or(main)
+    }
+
+    /// Whether a step or a sine in time explains more of the residual than this share.
+    fn in_time(&self, share: f64) -> bool {
+        let places = self.along_time(&self.fit.residual);
+        places.iter().any(|place| place.p_value <= IN_TIME && place.share > share)
+    }
+
+    fn along_time(&self, residual: &[f64]) -> Vec<crate::report::Where> {
+        let weights = weights(self.family.doubt(), residual);
+        let view = where_it_fails::View {
+            residual,
+            weights: &weights,
+            motion: &self.motion,
+            seed: self.settings.seed,
+        };
+        where_it_fails::times(self.family, &view)
     }
 
     /// Whether no other view of the held-out error contradicts: what really acts on the plant helps
@@ -298,18 +354,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         })
     }
 
-    fn with(&self, candidate: &Screened) -> Fit {
-        let start =
-            search::shaped(self.family, &self.fit, candidate, &self.fitted, self.settings.seed);
-        fit::refine(self.family, start, &self.fitted)
-    }
-
-    fn add(&mut self, candidate: &Screened, better: Fit) {
+    fn add(&mut self, tried: Tried) {
         let before = self.ladder.relative();
-        self.fit = better;
-        self.ladder.push(Some(candidate.term), &self.fit, Some(candidate.p_value));
+        self.fit = tried.fit;
+        self.ladder.push(Some(tried.term), &self.fit, Some(tried.p_value));
         self.observer.event(&Event::Added {
-            effect: &self.family.terms()[candidate.term].name,
+            effect: &self.family.terms()[tried.term].name,
             before,
             after: self.ladder.relative(),
         });
@@ -364,6 +414,53 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 const MOST_TRIED: usize = 4;
 /// A rival leaves at most this share of what the best candidate removed.
 const RIVAL: f64 = 0.05;
+
+/// The same in standard errors of the difference.
+const STANDARD_ERRORS: f64 = 1.0;
+/// Another form of an effect is taken where it leaves at most this share of the main form's squared
+/// error.
+const BETTER_FORM: f64 = 0.8;
+/// Largest p-value of a structure along time that is taken for real.
+const IN_TIME: f64 = 0.005;
+/// Pieces of time for the standard error of a mean.
+const PIECES: usize = 15;
+
+/// A candidate re-identified with the whole model.
+struct Tried {
+    term: usize,
+    fit: Fit,
+    /// Mean squared residual on all data.
+    square: f64,
+    p_value: f64,
+}
+
+/// Mean squared residual on all data.
+fn square(fit: &Fit) -> f64 {
+    fit.residual.iter().map(|value| value * value).sum::<f64>() / fit.residual.len() as f64
+}
+
+/// Whether the data cannot tell a rival from the best: the rival removes half as much at least,
+/// and its squared error is larger by less than a few per cent of what was removed or by less
+/// than the differences between pieces of time make likely. All data count: what a handful of
+/// parameters gains by being fitted is small against what a third of the data leaves to chance.
+fn as_good(rival: &Tried, best: &Tried, before: f64) -> bool {
+    let (removed, more) = (before - best.square, rival.square - best.square);
+    let pairs = rival.fit.residual.iter().zip(&best.fit.residual);
+    let differences: Vec<f64> = pairs.map(|(a, b)| a * a - b * b).collect();
+    let by_chance = STANDARD_ERRORS * error_of_mean(&differences);
+    more < 0.5 * removed && (more < RIVAL * removed || more < by_chance)
+}
+
+/// Standard error of the mean of autocorrelated values, from the means of contiguous pieces.
+fn error_of_mean(values: &[f64]) -> f64 {
+    let size = values.len().div_ceil(PIECES).max(1);
+    let means: Vec<f64> =
+        values.chunks(size).map(|piece| piece.iter().sum::<f64>() / piece.len() as f64).collect();
+    let count = means.len() as f64;
+    let mean = means.iter().sum::<f64>() / count;
+    let square: f64 = means.iter().map(|piece| (piece - mean).powi(2)).sum();
+    (square / (count * (count - 1.0).max(1.0))).sqrt()
+}
 
 /// Another view contradicts an effect where its held-out error grows by this factor.
 const CONTRADICTION: f64 = 1.05;

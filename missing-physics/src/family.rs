@@ -192,6 +192,17 @@ pub trait ModelFamily: Sync {
         crate::shapes::columns(self, model, prediction, term, shape)
     }
 
+    /// The term that this one is another form of, if any. A form is not screened by itself: it is tried
+    /// where the main form is a likely candidate, and taken where it is clearly better.
+    fn form_of(&self, _term: usize) -> Option<usize> {
+        None
+    }
+
+    /// Whether the term can be added to the model.
+    fn joins(&self, model: &Fitted, term: usize) -> bool {
+        !model.terms.contains(&term)
+    }
+
     /// [`ModelFamily::columns`] for many shapes of a term, in their order. A family that can do so
     /// cheaper than one by one says how.
     fn columns_of_shapes(

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::basis::{Basis, add_scaled, constrained, dot, gram, solve};
 use crate::evidence::Evidence;
-use crate::family::{Fitted, ModelFamily};
+use crate::family::ModelFamily;
 use crate::fit::Fit;
 use crate::placebo;
 use crate::shapes::{amplitudes, assemble};
@@ -135,6 +135,28 @@ pub fn screen<F: ModelFamily + ?Sized>(
         .collect();
     screened.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     screened
+}
+
+/// The best shape of one term, by its gain on all data, with its amplitudes from the fitted blocks; no
+/// p-value is asked for. Nothing where the term changes nothing.
+pub fn best_values<F: ModelFamily + ?Sized>(
+    family: &F,
+    fit: &Fit,
+    screening: &Screening<'_>,
+    term: usize,
+) -> Option<Vec<f64>> {
+    let one = Screening { candidates: &[term], ..*screening };
+    let weigh = |column: &[f64]| -> Vec<f64> {
+        column.iter().zip(one.weights).map(|(value, weight)| value * weight).collect()
+    };
+    let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
+    let trials = trials(family, fit, &one, &own);
+    let falls = falls(&trials, &[weigh(&fit.residual)]);
+    let best = best_trial(&trials, &falls, 0)?;
+    let about = &family.terms()[term];
+    let amplitude = held_out(family, fit, &one, best).amplitude;
+    let amplitude: &[f64] = if amplitudes(about).is_empty() { &[] } else { &amplitude };
+    Some(assemble(about, &best.shape, amplitude))
 }
 
 fn trials<F: ModelFamily + ?Sized>(
@@ -297,9 +319,4 @@ fn held_out<F: ModelFamily + ?Sized>(
     let before = left(&vec![0.0; raw.len()]);
     let gain = if before > 0.0 { 1.0 - left(&amplitude) / before } else { 0.0 };
     HeldOut { gain, amplitude, leverage: products[0][0] }
-}
-
-/// The model with the screened candidate added as it was screened.
-pub fn extended(fit: &Fit, candidate: &Screened) -> Fitted {
-    fit.model.with(candidate.term, &candidate.values)
 }

@@ -10,7 +10,6 @@ use aep_core::{Aep, Budget, Domain, Driver, FnProblem, Method, Scale, Start};
 use crate::basis::{Basis, constrained, dot, gram};
 use crate::family::{Fitted, ModelFamily, Parameter, Role};
 use crate::fit::{self, Fit, weighted_square};
-use crate::screen::Screened;
 use crate::shapes::{amplitudes, assemble};
 
 /// Budget of the search over a model's own parameters.
@@ -74,20 +73,20 @@ pub fn identify_by<F: ModelFamily + ?Sized>(
     Found { fit: fit::refine(family, best, weights), evaluations }
 }
 
-/// The model of `fit` with the candidate added, the candidate's shapes searched between the
-/// neighbours of the best one that was screened.
+/// The model of `fit` with a term added; its shapes are searched between the neighbours of those in
+/// `values`, which are among the term's trial shapes.
 pub fn shaped<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
-    candidate: &Screened,
+    term: usize,
+    values: &[f64],
     weights: &[f64],
     seed: u64,
 ) -> Fitted {
-    let term = candidate.term;
     let about = &family.terms()[term];
-    let shape: Vec<f64> = pick(&about.parameters, &candidate.values, Role::Shape);
+    let shape: Vec<f64> = pick(&about.parameters, values, Role::Shape);
     if shape.is_empty() {
-        return fit.model.with(term, &candidate.values);
+        return fit.model.with(term, values);
     }
     let weigh = |column: &[f64]| -> Vec<f64> {
         column.iter().zip(weights).map(|(value, weight)| value * weight).collect()

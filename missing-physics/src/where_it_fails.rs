@@ -96,6 +96,18 @@ fn tested(
     (share, placebo::p_value(share, &placebos))
 }
 
+/// Only the coordinates that are, or behave like, time.
+pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where> {
+    let shuffles = placebo::shuffles(view.residual.len(), PLACEBOS, view.seed);
+    let unit = family.quantity().unit;
+    family
+        .coordinates()
+        .par_iter()
+        .filter(|coordinate| only_grows(coordinate))
+        .map(|coordinate| along_time(coordinate, view, &shuffles, &unit))
+        .collect()
+}
+
 /// Share of the squared error and of the time in every regime; both sum to one.
 pub fn regimes<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> Vec<RegimeShare> {
     let total: f64 = residual.iter().map(|r| r * r).sum::<f64>().max(f64::MIN_POSITIVE);

@@ -1,6 +1,7 @@
 //! One cell of the matrix: many seeds of one hidden effect at one level.
 
 use friction_ident::family::{FrictionFamily, Options};
+use missing_physics::discover::terms;
 use missing_physics::report::Verdict;
 use missing_physics::{Discovery, ModelFamily, Settings, discover, search};
 
@@ -30,7 +31,7 @@ impl Level {
         }
     }
 
-    fn ratio(self, draw: f64) -> f64 {
+    pub fn ratio(self, draw: f64) -> f64 {
         let (low, high) = match self {
             Self::Clear => (10.0f64, 30.0f64),
             Self::Moderate => (3.0, 10.0),
@@ -66,6 +67,8 @@ pub struct Outcome {
     pub answer: Answer,
     /// First effect added, or the verdict.
     pub said: String,
+    /// Effects added besides the hidden ones and those that the report calls indistinguishable.
+    pub extra: usize,
     /// Held-out error over that of the true structure, where the answer is right.
     pub error_ratio: Option<f64>,
     /// Time taken, s.
@@ -75,9 +78,9 @@ pub struct Outcome {
 /// Root mean square of the largest 5 % of the residual that the base model leaves.
 fn top(table: &Table, excitation: Excitation) -> Option<f64> {
     let family = FrictionFamily::new(&table.record(excitation).ok()?, &Options::default()).ok()?;
-    let terms = missing_physics::discover::terms(&family, &BASE.map(str::to_owned)).ok()?;
+    let base = terms(&family, &BASE.map(str::to_owned)).ok()?;
     let weights = vec![1.0; family.target().len()];
-    let mut squares: Vec<f64> = search::identify(&family, &terms, &weights, 1)
+    let mut squares: Vec<f64> = search::identify(&family, &base, &weights, 1)
         .fit
         .residual
         .iter()
@@ -89,7 +92,7 @@ fn top(table: &Table, excitation: Excitation) -> Option<f64> {
 }
 
 /// Size at which `kind` reaches `ratio` times the noise, by a few secant steps in the logarithm.
-fn sized(kind: Hidden, seed: u64, excitation: Excitation, ratio: f64) -> Option<f64> {
+pub fn sized(kind: Hidden, seed: u64, excitation: Excitation, ratio: f64) -> Option<f64> {
     let noise = top(&Table::draw(seed, &[]), excitation)?;
     let mut size: f64 = match kind {
         Hidden::ActuatorLag => 2e-3,
@@ -131,14 +134,30 @@ pub fn run(
     let answer = judge(&found, kinds, names);
     let said = found.added.first().cloned().unwrap_or_else(|| format!("{:?}", found.verdict));
     let error_ratio = (answer == Answer::First).then(|| ratio(&family, &found, names)).flatten();
-    Some(Outcome { answer, said, error_ratio, wall_s: found.wall_s })
+    let extra = extra(&found, names);
+    Some(Outcome { answer, said, extra, error_ratio, wall_s: found.wall_s })
+}
+
+/// The effect's name without its form.
+fn stem(effect: &str) -> &str {
+    effect.split(':').next().unwrap_or_default()
+}
+
+fn extra(found: &Discovery, names: &[&str]) -> usize {
+    let excused = |added: &str| {
+        found.ambiguous.iter().any(|set| {
+            let inside = |effect: &str| set.effects.iter().any(|other| other == effect);
+            inside(added) && set.effects.iter().any(|other| names.contains(&stem(other)))
+        })
+    };
+    found.added.iter().filter(|added| !names.contains(&stem(added)) && !excused(added)).count()
 }
 
 fn judge(found: &Discovery, kinds: &[Hidden], names: &[&str]) -> Answer {
-    let listed = |effect: &String| names.contains(&effect.as_str());
+    let listed = |effect: &String| names.contains(&stem(effect));
     let in_set =
         found.ambiguous.iter().any(|set| set.effects.len() <= 3 && set.effects.iter().any(listed));
-    let complete = names.iter().all(|name| found.added.iter().any(|added| added == name));
+    let complete = names.iter().all(|name| found.added.iter().any(|added| stem(added) == *name));
     match (names.is_empty(), found.added.first()) {
         (false, Some(first)) if names.len() == 1 && listed(first) => Answer::First,
         (false, Some(_)) if names.len() > 1 && complete => Answer::First,
@@ -157,11 +176,11 @@ fn judge(found: &Discovery, kinds: &[Hidden], names: &[&str]) -> Answer {
 /// Held-out error of the discovered model over that of the true structure.
 fn ratio(family: &FrictionFamily, found: &Discovery, names: &[&str]) -> Option<f64> {
     let all: Vec<String> = BASE.iter().chain(names).map(|name| (*name).to_owned()).collect();
-    let terms = missing_physics::discover::terms(family, &all).ok()?;
+    let full = terms(family, &all).ok()?;
     let split = missing_physics::split::Split::new(family.target().len(), family.blocks());
     let weights: Vec<f64> =
         split.fit(family.target().len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
-    let truth = search::identify(family, &terms, &weights, 1).fit;
+    let truth = search::identify(family, &full, &weights, 1).fit;
     let error = found.ladder.last()?.error.get("force_rms_N")?.validation;
     Some(error / split.rms(&truth.residual).validation)
 }

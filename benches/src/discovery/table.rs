@@ -118,13 +118,7 @@ impl Table {
                 let bump = |at: f64, width: f64| (-((x - at) / width).powi(2)).exp();
                 size * (bump(0.02 + 0.03 * draw[0], 0.02) - bump(0.07 + 0.04 * draw[1], 0.025))
             }
-            Hidden::FrictionStep => {
-                if t > end * (0.35 + 0.3 * draw[0]) {
-                    *size
-                } else {
-                    0.0
-                }
-            }
+            Hidden::FrictionStep if t > end * (0.35 + 0.3 * draw[0]) => *size,
             _ => 0.0,
         };
         (self.coulomb + self.hidden.iter().map(extra).sum::<f64>()).max(0.0)

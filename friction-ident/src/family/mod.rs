@@ -75,8 +75,10 @@ impl FrictionFamily {
             .position
             .iter()
             .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
-        let all = options.library.effects().iter().copied();
-        let effects: Vec<_> = all.filter(|effect| effect.suits(axis)).collect();
+        let main = options.library.effects().iter().copied().filter(|effect| effect.suits(axis));
+        let effects: Vec<&'static dyn Effect> = main
+            .flat_map(|effect| std::iter::once(effect).chain(effect.forms().iter().copied()))
+            .collect();
         let limits = limits::Limits::of(&prepared, axis, stroke);
         let mut terms = vec![limits.mass()];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
@@ -337,6 +339,18 @@ impl ModelFamily for FrictionFamily {
             return self.ripples(shapes);
         }
         shapes.par_iter().map(|shape| self.columns(model, prediction, term, shape)).collect()
+    }
+
+    fn form_of(&self, term: usize) -> Option<usize> {
+        let stem = self.terms[term].name.split_once(':')?.0;
+        self.terms.iter().position(|main| main.name == stem)
+    }
+
+    fn joins(&self, model: &Fitted, term: usize) -> bool {
+        let Some(effect) = term.checked_sub(1).map(|index| self.effects[index]) else {
+            return false;
+        };
+        self.model(model).and_then(|plant| plant.with_effect(effect)).is_ok()
     }
 
     fn coordinates(&self) -> &[Coordinate] {
