@@ -20,20 +20,76 @@ const BOTTOM: f64 = 44.0;
 /// Colours of the style sheet for curves with names of their own.
 const OTHERS: [&str; 3] = ["c3", "c4", "c0"];
 
+/// What is known of the curve of the same place: an area between two lines.
+pub(crate) struct Band {
+    /// Label of the curve that it belongs to.
+    pub label: String,
+    /// Abscissa.
+    pub x: Vec<f64>,
+    /// Lower line.
+    pub low: Vec<f64>,
+    /// Upper line.
+    pub high: Vec<f64>,
+}
+
 /// The plot with its title and legend; nothing where it has no finite point.
 pub(crate) fn figure(plot: &Plot) -> Option<String> {
+    figure_with_bands(plot, &[])
+}
+
+/// The same with bands behind the curves.
+pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
     let curves: Vec<Curve> = plot.curves.iter().filter_map(cleaned).collect();
+    let edges: Vec<Curve> = bands.iter().flat_map(edges).collect();
     let x = Scale::fitting(curves.iter().flat_map(|c| &c.x), LEFT, WIDTH - RIGHT)?;
-    let y = Scale::of(curves.iter().flat_map(|c| &c.y), HEIGHT - BOTTOM, TOP)?;
+    let both = curves.iter().chain(&edges).flat_map(|c| &c.y);
+    let y = Scale::of(both, HEIGHT - BOTTOM, TOP)?;
+    let areas: String = edges.chunks(2).map(|pair| area(pair, &curves, &x, &y)).collect();
     let drawn: String =
         curves.iter().enumerate().map(|(k, c)| curve(c, colour(c, k), &x, &y)).collect();
     let title = escape(&plot.title);
     Some(format!(
         "<figure><figcaption>{title}</figcaption>{}\
-         <svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=img aria-label=\"{title}\">{}{drawn}</svg></figure>\n",
+         <svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=img aria-label=\"{title}\">{}{areas}{drawn}</svg></figure>\n",
         legend(&curves),
         axes(plot, &x, &y),
     ))
+}
+
+/// Lower and upper line of a band where both are finite; neither where there are no such points.
+fn edges(band: &Band) -> Vec<Curve> {
+    let points = band.x.iter().zip(&band.low).zip(&band.high);
+    let finite: Vec<(f64, f64, f64)> = points
+        .map(|((x, low), high)| (*x, *low, *high))
+        .filter(|(x, low, high)| x.is_finite() && low.is_finite() && high.is_finite())
+        .collect();
+    if finite.is_empty() {
+        return Vec::new();
+    }
+    let line = |pick: fn(&(f64, f64, f64)) -> f64| Curve {
+        label: band.label.clone(),
+        x: finite.iter().map(|point| point.0).collect(),
+        y: finite.iter().map(pick).collect(),
+    };
+    vec![line(|point| point.1), line(|point| point.2)]
+}
+
+/// The area between two lines, in the colour of the curve with their label.
+fn area(pair: &[Curve], curves: &[Curve], x: &Scale, y: &Scale) -> String {
+    let [low, high] = pair else { return String::new() };
+    let index = curves.iter().position(|curve| curve.label == low.label).unwrap_or(0);
+    let place = |curve: &Curve| -> Vec<String> {
+        let points = curve.x.iter().zip(&curve.y);
+        points.map(|(a, b)| format!("{:.1},{:.1}", x.at(*a), y.at(*b))).collect()
+    };
+    let (there, mut back) = (place(low), place(high));
+    back.reverse();
+    format!(
+        "<polygon class=\"band {}\" points=\"{} {}\"/>",
+        colour(low, index),
+        there.join(" "),
+        back.join(" ")
+    )
 }
 
 /// The finite points of a curve; nothing where there are none.
@@ -142,6 +198,21 @@ mod tests {
         assert!(line.contains("<polyline") && line.contains("a&lt;b") && !line.contains("a<b"));
         let cloud = figure(&plot(vec![0.0, 2.0, 1.0], vec![1.0, 2.0, 1.0])).unwrap();
         assert!(cloud.contains("class=\"dots"));
+    }
+
+    #[test]
+    fn a_band_lies_behind_its_curve_and_widens_the_axis() {
+        let plot = plot(vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 1.0]);
+        let band = |high: f64| Band {
+            label: "a<b".into(),
+            x: vec![0.0, 1.0, 2.0],
+            low: vec![0.5, 1.5, f64::NAN],
+            high: vec![high; 3],
+        };
+        let figure = |high| figure_with_bands(&plot, &[band(high)]).unwrap();
+        assert!(figure(3.0).contains("<polygon class=\"band") && !figure(3.0).contains("NaN"));
+        assert!(figure(900.0).contains(">800<") || figure(900.0).contains("×10"));
+        assert!(!figure(f64::INFINITY).contains("<polygon"));
     }
 
     #[test]

@@ -13,7 +13,9 @@ mod doubts;
 mod ladder;
 mod parameters;
 mod ranking;
+mod residual;
 mod verdict;
+mod views;
 mod where_it_fails;
 
 /// Where the recording came from, for the head of the page.
@@ -35,6 +37,7 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
         verdict::head(discovery, source),
         ladder::section(discovery),
         where_it_fails::section(discovery),
+        residual::section(discovery),
         curves(discovery),
         ranking::section(discovery),
         parameters::section(discovery),
@@ -48,7 +51,9 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
 pub fn comparison(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
     let sections = [
         verdict::plain_head(discovery, source),
+        views::section(discovery),
         where_it_fails::section(discovery),
+        residual::section(discovery),
         curves(discovery),
         ladder::section(discovery),
         parameters::section(discovery),
@@ -70,7 +75,10 @@ fn page(title: &str, sections: &[String], discovery: &Discovery, source: &Source
 }
 
 fn curves(discovery: &Discovery) -> String {
-    let figures: String = discovery.plots.iter().filter_map(plot::figure).collect();
+    // The maps have been drawn with their bands.
+    let drawn = residual::titles(discovery);
+    let plots = discovery.plots.iter().filter(|plot| !drawn.contains(&plot.title));
+    let figures: String = plots.filter_map(plot::figure).collect();
     if figures.is_empty() {
         return String::new();
     }

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use aep_studio::{Source, report};
 use missing_physics::data_check::{DataCheck, check};
 use missing_physics::{Channel, Discovery, Recording};
+use serde_json::json;
 
 fn discovery() -> Discovery {
     serde_json::from_str(include_str!("fixtures/discovery.json")).unwrap()
@@ -48,6 +49,41 @@ fn everything_found_stands_on_the_page() {
         "vir*gtau",
         "held at 25.0 N",
         "Seed 1",
+    ] {
+        assert!(page.contains(part), "'{part}' is not on the page");
+    }
+}
+
+#[test]
+fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
+    let mut discovery = discovery();
+    let bin =
+        |at: f64| json!({"at": at, "mean": at, "low": at - 1.0, "high": at + 1.0, "points": 9});
+    let coordinate = discovery.where_base[0].coordinate.clone();
+    let diagnosis = json!({
+        "whiteness": {"interval_s": 0.008, "autocorrelation": [0.5], "expected": [0.0],
+            "bound": [0.1], "statistic": 99.0, "degrees_of_freedom": 1, "p_value": 0.0001,
+            "memory_s": 0.016},
+        "independence": [],
+        "maps": [{"coordinate": coordinate, "unit": "m/s", "against_motion": true,
+            "bins": [bin(0.0), bin(1.0), bin(2.0)]}],
+        "lines": [{"along": "time", "name": "50.0 Hz", "period": 0.02, "unit": "s",
+            "amplitude": 0.4, "p_value": 0.001, "note": "period 2.50 mm seen at 125 mm/s"}],
+    });
+    discovery.diagnosis = Some(serde_json::from_value(diagnosis).unwrap());
+    let metrics = json!({"rms": 1.2, "relative": 0.03, "fit_percent": 97.1,
+        "variance_accounted_for_percent": null, "points": 100});
+    let view = json!({"name": "free run", "about": "position", "unit": "m", "floor": null,
+        "metrics": {"fit": metrics, "validation": metrics}, "decides": false,
+        "warnings": ["the free run <has> drifted"]});
+    discovery.views = vec![serde_json::from_value(view).unwrap()];
+    let page = page(&discovery) + &report::comparison(&discovery, &source("run.csv"), &data());
+    for part in [
+        "not white (p &lt; 0.001): it resembles itself for about 16.0 ms",
+        "period 2.50 mm seen at 125 mm/s",
+        "class=\"band",
+        "97.10",
+        "the free run &lt;has&gt; drifted",
     ] {
         assert!(page.contains(part), "'{part}' is not on the page");
     }

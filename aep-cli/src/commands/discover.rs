@@ -118,6 +118,13 @@ fn story(discovery: &Discovery) -> String {
         text += &heading("Where the last model fails");
         text += &output::regimes(&discovery.regimes);
     }
+    if let Some(diagnosis) = &discovery.diagnosis {
+        text += &heading("Is what remains noise?");
+        text += &output::tests(diagnosis);
+        let lines = output::lines(discovery, diagnosis);
+        text += if lines.is_empty() { "" } else { "\n" };
+        text += &lines;
+    }
     if let Some(last) = discovery.ladder.last() {
         text += &heading("Parameters of the last model");
         text += &output::parameters(last);

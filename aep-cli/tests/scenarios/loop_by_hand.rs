@@ -16,6 +16,11 @@ fn the_loop_by_hand_finds_and_adds_the_hidden_effect() {
         .aep(&format!("compare {data} --model model.json --json before.json --html before.html"));
     assert!(compared.done().contains("of the error"));
     assert!(desk.read("before.html").contains("How well the model fits"));
+    for part in ["In several views", "windows of 0.1 s", "free run", "closed loop"] {
+        assert!(compared.out.contains(part), "{part}");
+    }
+    let views = &desk.json("before.json")["views"];
+    assert!(views[0]["metrics"]["validation"]["fit_percent"].is_f64());
 
     let suggested = desk.aep(&format!("suggest {data} --model model.json --json suggested.json"));
     assert!(suggested.done().contains("--add stribeck"), "{}", suggested.out);
@@ -25,7 +30,10 @@ fn the_loop_by_hand_finds_and_adds_the_hidden_effect() {
     let extended =
         desk.aep(&format!("extend {data} --model model.json --add stribeck -o better.json"));
     assert!(extended.done().contains("+ stribeck"));
-    desk.aep(&format!("compare {data} --model better.json --json after.json")).done();
+    let line = "compare {data} --model better.json --model model.json --json after.json";
+    let both = desk.aep(&line.replace("{data}", data));
+    assert!(both.done().contains("better"), "{}", both.out);
+    assert_eq!(desk.json("after.json")["models"].as_array().unwrap().len(), 2);
     let error =
         |name: &str| desk.json(name)["error"]["force_relative"]["validation"].as_f64().unwrap();
     assert!(error("after.json") < 0.4 * error("before.json"));
