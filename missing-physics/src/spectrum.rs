@@ -31,6 +31,8 @@ const DIVISIONS: (usize, usize) = (128, 4096);
 const EMPTY: f64 = 0.1;
 /// Two frequencies are the same, or one a multiple of the other, within this.
 const SAME: f64 = 0.01;
+/// Share of the amplitudes of all passes that must remain in their sum.
+const IN_ALL: f64 = 0.5;
 /// Least share of the time at the speed that turns one line into another.
 const AT_SPEED: f64 = 0.03;
 /// Curves are thinned out to this many points for plots.
@@ -95,7 +97,10 @@ pub fn lines(full: &FullRate, quantity: &str, unit: &str) -> (Vec<Line>, Vec<Plo
     let plots = spectra.iter().map(|spectrum| spectrum.plot(quantity, unit)).collect();
     let mut lines: Vec<(usize, Line)> = Vec::new();
     for (k, spectrum) in spectra.iter().enumerate() {
-        lines.extend(spectrum.lines().into_iter().map(|line| (k, line)));
+        let kept = spectrum.lines().into_iter().filter(|line| {
+            spectrum.coordinate.is_none_or(|c| in_all_passes(full, c, 1.0 / line.period))
+        });
+        lines.extend(kept.take(MOST).map(|line| (k, line)));
     }
     for k in 0..lines.len() {
         lines[k].1.note = note(full, &spectra, &lines, k);
@@ -148,7 +153,7 @@ impl<'a> Spectrum<'a> {
                 note: String::new(),
             }
         };
-        self.periodogram.peaks(FALSE_ALARMS).into_iter().take(MOST).map(named).collect()
+        self.periodogram.peaks(FALSE_ALARMS).into_iter().map(named).collect()
     }
 
     fn plot(&self, quantity: &str, unit: &str) -> Plot {
@@ -230,6 +235,54 @@ fn bridged(sum: &[f64], points: &[f64]) -> Vec<f64> {
             })
         })
         .collect()
+}
+
+/// Whether a line along a coordinate has the same phase in its passes: what depends on the place is there
+/// whenever the place is passed. The counts of an encoder beat with the sampling at a uniform speed and
+/// leave lines as sharp, but others at every other speed. `|sum z|² / (sum w · sum |z|² / w)` of the
+/// amplitudes `z` of passes of length `w` is 1 for a line in all of them, and the share of the way where
+/// it is in one.
+fn in_all_passes(full: &FullRate, coordinate: &Coordinate, frequency: f64) -> bool {
+    let x = &coordinate.values;
+    let seen = parity(coordinate, &full.residual, &vec![1.0; full.residual.len()]);
+    let period = 1.0 / frequency;
+    let (mut total, mut way, mut apart) = ((0.0, 0.0), 0.0, 0.0);
+    for pass in passes(full, x) {
+        let length = (x[pass.end - 1] - x[pass.start]).abs();
+        if length < 3.0 * period {
+            continue;
+        }
+        let mean = seen[pass.clone()].iter().sum::<f64>() / pass.len() as f64;
+        let z = pass.clone().skip(1).fold((0.0, 0.0), |(cosine, sine), k| {
+            let step = (x[k] - x[k - 1]).abs() * (seen[k] - mean);
+            let (s, c) = (TAU * frequency * x[k]).sin_cos();
+            (cosine + c * step, sine + s * step)
+        });
+        total = (total.0 + z.0, total.1 + z.1);
+        way += length;
+        apart += (z.0 * z.0 + z.1 * z.1) / length;
+    }
+    apart > 0.0 && (total.0 * total.0 + total.1 * total.1) / (way * apart) >= IN_ALL
+}
+
+/// Stretches of used samples in which a coordinate runs one way.
+fn passes(full: &FullRate, x: &[f64]) -> Vec<Range<usize>> {
+    let mut passes = Vec::new();
+    for piece in &full.pieces {
+        let mut start = piece.start;
+        for k in piece.clone() {
+            let ends = k + 1 == piece.end
+                || !full.used[k + 1]
+                || (k > start && (x[k + 1] - x[k]) * (x[k] - x[k - 1]) < 0.0);
+            if ends {
+                if full.used[start] && k > start + 1 {
+                    passes.push(start..k + 1);
+                }
+                start = k + 1;
+            }
+        }
+    }
+    passes
 }
 
 /// What the `k`-th line has to do with the others. Along a coordinate harmonics come first: one line of

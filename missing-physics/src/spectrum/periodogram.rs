@@ -17,6 +17,11 @@ const NEIGHBOURS: (usize, usize) = (8, 60);
 const REACH: usize = 3;
 /// Neighbouring bins of a tapered periodogram are correlated: this many count as one.
 const CORRELATED: f64 = 1.5;
+/// Stretches of a piece in which a line must be found with the same phase, two to a length.
+const STRETCHES: usize = 8;
+/// Share `|sum z|² / (n sum |z|²)` of their amplitudes that must remain: a line throughout has nearly 1,
+/// one in a third of the piece a third, a burst in one stretch `1 / n`.
+const THROUGHOUT: f64 = 0.2;
 /// Shortest piece.
 const LEAST: usize = 64;
 
@@ -29,6 +34,7 @@ pub struct Periodogram {
     /// How well the background is known, bin by bin.
     certainty: Vec<f64>,
     length: usize,
+    pieces: Vec<Vec<f64>>,
 }
 
 /// A bin that stands above the background.
@@ -72,7 +78,7 @@ impl Periodogram {
         }
         let step = 1.0 / (length as f64 * interval);
         let (background, certainty) = (0..power.len()).map(|k| background(&power, k)).unzip();
-        Some(Self { step, power, background, certainty, length })
+        Some(Self { step, power, background, certainty, length, pieces: pieces.to_vec() })
     }
 
     /// Bins that are looked at: not the lowest, which have no neighbours below, nor the last.
@@ -87,7 +93,7 @@ impl Periodogram {
             .clone()
             .filter(|&k| self.is_highest(k))
             .map(|k| (k, self.peak(k)))
-            .filter(|(_, peak)| peak.p_value <= alpha)
+            .filter(|(k, peak)| peak.p_value <= alpha && self.is_throughout(*k, peak.frequency))
             .collect();
         peaks.sort_by(|a, b| {
             let height = |k: usize| self.power[k] / self.background[k];
@@ -99,6 +105,30 @@ impl Periodogram {
     fn is_highest(&self, k: usize) -> bool {
         let around = k.saturating_sub(REACH)..(k + REACH + 1).min(self.power.len());
         self.background[k] > 0.0 && around.into_iter().all(|j| self.power[j] <= self.power[k])
+    }
+
+    /// Whether a line has the same phase in enough of the stretches of its pieces. The lowest bins have
+    /// too few periods in a stretch to tell.
+    fn is_throughout(&self, k: usize, frequency: f64) -> bool {
+        if k < 2 * STRETCHES {
+            return true;
+        }
+        let turn = 2.0 * PI * frequency / (self.step * self.length as f64);
+        let (mut together, mut apart) = (0.0, 0.0);
+        for piece in self.pieces.iter().filter(|piece| 2 * piece.len() >= self.length) {
+            let length = piece.len() / STRETCHES;
+            let starts = (0..=piece.len() - length).step_by((length / 2).max(1));
+            let count = starts.clone().count() as f64;
+            let (mut sum, mut squares) = ((0.0, 0.0), 0.0);
+            for start in starts {
+                let z = tapered_amplitude(&piece[start..start + length], start, turn);
+                sum = (sum.0 + z.0, sum.1 + z.1);
+                squares += z.0 * z.0 + z.1 * z.1;
+            }
+            together += sum.0 * sum.0 + sum.1 * sum.1;
+            apart += count * squares;
+        }
+        together >= THROUGHOUT * apart
     }
 
     fn peak(&self, k: usize) -> Peak {
@@ -135,6 +165,18 @@ impl Periodogram {
         let found = self.bins().map(|k| self.amplitude(self.power[k])).collect();
         (frequency, found, self.bins().map(|k| self.amplitude(needed(k))).collect())
     }
+}
+
+/// Complex amplitude of a stretch that begins at sample `start`, by `turn` per sample.
+fn tapered_amplitude(stretch: &[f64], start: usize, turn: f64) -> (f64, f64) {
+    let count = stretch.len() as f64;
+    let mean = stretch.iter().sum::<f64>() / count.max(1.0);
+    stretch.iter().enumerate().fold((0.0, 0.0), |(cosine, sine), (k, value)| {
+        let taper = 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / count).cos();
+        let (s, c) = (turn * (start + k) as f64).sin_cos();
+        let value = taper * (value - mean);
+        (cosine + c * value, sine + s * value)
+    })
 }
 
 /// Height of a Hann-tapered line this far from a bin, of 1 on it.
