@@ -16,7 +16,8 @@ use crate::simulator::{DEFAULT_MAX_STEP, SimulationError};
 mod fit;
 mod start;
 
-use fit::Fitter;
+pub(crate) use fit::{Fitter, TOGETHER};
+pub(crate) use start::Data;
 
 /// How windows are cut and fitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,13 +132,13 @@ pub fn window_errors(
     recording: &Recording,
     options: &WindowOptions,
 ) -> Result<WindowErrors, WindowError> {
-    let data = start::Data::new(recording, options)?;
+    let data = Data::new(recording, options)?;
     let cut = data.cut();
     if cut.is_empty() {
         return Err(WindowError::TooShort { length: options.length });
     }
     let windows = cut
-        .par_chunks(fit::TOGETHER)
+        .par_chunks(TOGETHER)
         .map_init(|| Fitter::new(model, &data), Fitter::fit)
         .flatten_iter()
         .collect();

@@ -255,7 +255,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         }
     }
 
-    /// The candidate that, re-identified with the whole model, leaves the smallest held-out error.
+    /// The candidate that, re-identified with the whole model, leaves the smallest error, of those that
+    /// lower the held-out error.
     /// None where a plain structure along time explains more than any candidate: then no effect of
     /// the library is at work, but something that happens at its own time.
     fn best_addition(&mut self, screened: &[Screened]) -> Option<Tried> {
@@ -276,18 +277,30 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             });
             let main = self.tried(candidate.term, &candidate.values, candidate.p_value);
             let best = self.best_form(main);
-            if best.error < enough && self.confirmed(&best.fit) {
+            let held_out = self.split.rms(&best.fit.residual).validation;
+            if held_out < enough && self.confirmed(&best.fit) {
                 tried.push(best);
             }
         }
-        tried.sort_by(|a, b| a.error.total_cmp(&b.error));
-        let best = tried.first()?;
-        if self.in_time(1.0 - (best.error / before).powi(2)) {
+        tried.sort_by(|a, b| a.square.total_cmp(&b.square));
+        let before = square(&self.fit);
+        let chosen = Self::simplest(&tried, before)?;
+        if self.in_time(1.0 - tried[chosen].square / before) {
             return None;
         }
-        let rivals = tried[1..].iter().filter(|rival| self.as_good(rival, best, before));
+        let best = tried.swap_remove(chosen);
+        let rivals = tried.iter().filter(|rival| as_good(rival, &best, before));
         self.ladder.rivals(best.term, rivals.map(|rival| rival.term).collect());
-        Some(tried.swap_remove(0))
+        Some(best)
+    }
+
+    /// Of the best candidate and those that are as good the one with the fewest parameters.
+    fn simplest(tried: &[Tried], before: f64) -> Option<usize> {
+        let best = tried.first()?;
+        let parameters = |k: &usize| tried[*k].fit.model.values.len();
+        (0..tried.len())
+            .filter(|&k| k == 0 || as_good(&tried[k], best, before))
+            .min_by_key(parameters)
     }
 
     /// A term re-identified with the whole model, its shapes searched around `values`.
@@ -295,14 +308,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let start =
             search::shaped(self.family, &self.fit, term, values, &self.fitted, self.settings.seed);
         let fit = fit::refine(self.family, start, &self.fitted);
-        let error = self.split.rms(&fit.residual).validation;
-        Tried { term, fit, error, p_value }
+        Tried { term, square: square(&fit), fit, p_value }
     }
 
     /// The main form of an effect, or another one that is clearly better.
     fn best_form(&self, main: Tried) -> Tried {
         let weights = weights(self.family.doubt(), &self.fit.residual);
-        let least = main.error * BETTER_FORM.sqrt();
+        let least = main.square * BETTER_FORM;
         (0..self.family.terms().len())
             .filter(|&form| self.family.form_of(form) == Some(main.term))
             .filter_map(|form| {
@@ -310,8 +322,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 let values = screen::best_values(self.family, &self.fit, &screening, form)?;
                 Some(self.tried(form, &values, main.p_value))
             })
-            .filter(|form| form.error < least)
-            .min_by(|a, b| a.error.total_cmp(&b.error))
+            .filter(|form| form.square < least)
+            .min_by(|a, b| a.square.total_cmp(&b.square))
             .unwrap_or(main)
     }
 
@@ -330,26 +342,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             seed: self.settings.seed,
         };
         where_it_fails::times(self.family, &view)
-    }
-
-    /// Whether the held-out data cannot tell a rival from the best: the rival removes half as much at
-    /// least, and its error is larger by less than a few per cent of what was removed or by less than
-    /// the differences between blocks of time make likely.
-    fn as_good(&self, rival: &Tried, best: &Tried, before: f64) -> bool {
-        let removed = before.powi(2) - best.error.powi(2);
-        let more = rival.error.powi(2) - best.error.powi(2);
-        if more > 0.5 * removed {
-            return false;
-        }
-        let differences: Vec<f64> = self
-            .split
-            .validation(best.fit.residual.len())
-            .iter()
-            .enumerate()
-            .filter(|(_, held_out)| **held_out)
-            .map(|(k, _)| rival.fit.residual[k].powi(2) - best.fit.residual[k].powi(2))
-            .collect();
-        more < RIVAL * removed || more < STANDARD_ERRORS * error_of_mean(&differences)
     }
 
     /// Whether no other view of the held-out error contradicts: what really acts on the plant helps
@@ -425,7 +417,7 @@ const RIVAL: f64 = 0.05;
 /// The same in standard errors of the difference.
 const STANDARD_ERRORS: f64 = 1.0;
 /// Another form of an effect is taken where it leaves at most this share of the main form's squared
-/// held-out error.
+/// error.
 const BETTER_FORM: f64 = 0.8;
 /// Largest p-value of a structure along time that is taken for real.
 const IN_TIME: f64 = 0.005;
@@ -436,9 +428,26 @@ const PIECES: usize = 15;
 struct Tried {
     term: usize,
     fit: Fit,
-    /// Root mean square error on held-out data.
-    error: f64,
+    /// Mean squared residual on all data.
+    square: f64,
     p_value: f64,
+}
+
+/// Mean squared residual on all data.
+fn square(fit: &Fit) -> f64 {
+    fit.residual.iter().map(|value| value * value).sum::<f64>() / fit.residual.len() as f64
+}
+
+/// Whether the data cannot tell a rival from the best: the rival removes half as much at least,
+/// and its squared error is larger by less than a few per cent of what was removed or by less
+/// than the differences between pieces of time make likely. All data count: what a handful of
+/// parameters gains by being fitted is small against what a third of the data leaves to chance.
+fn as_good(rival: &Tried, best: &Tried, before: f64) -> bool {
+    let (removed, more) = (before - best.square, rival.square - best.square);
+    let pairs = rival.fit.residual.iter().zip(&best.fit.residual);
+    let differences: Vec<f64> = pairs.map(|(a, b)| a * a - b * b).collect();
+    let by_chance = STANDARD_ERRORS * error_of_mean(&differences);
+    more < 0.5 * removed && (more < RIVAL * removed || more < by_chance)
 }
 
 /// Standard error of the mean of autocorrelated values, from the means of contiguous pieces.

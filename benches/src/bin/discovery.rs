@@ -77,9 +77,9 @@ fn main() {
         ProgressStyle::with_template("{wide_bar} {pos}/{len} {eta} {msg}").expect("valid"),
     );
     println!(
-        "| hidden | level | first | in a set | silent | unexplained | missed | wrong | error / true structure | s |"
+        "| hidden | level | first | in a set | silent | unexplained | missed | wrong | with extra effects | error / true structure | s |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
     for row in &rows {
         for &level in &levels {
             bar.set_message(format!("{} {level:?}", row.name));
@@ -121,9 +121,10 @@ fn print_row(row: &Row, level: Level, outcomes: &[Outcome]) {
         (Some(median), Some(high)) => format!("{median:.3} (95 %: {high:.3})"),
         _ => "-".to_owned(),
     };
+    let extra = outcomes.iter().filter(|outcome| outcome.extra > 0).count();
     let time = outcomes.iter().map(|o| o.wall_s).sum::<f64>() / outcomes.len().max(1) as f64;
     println!(
-        "| {} | {level:?} | {} | {} | {} | {} | {} | {} | {ratio} | {time:.2} |",
+        "| {} | {level:?} | {} | {} | {} | {} | {} | {} | {extra} | {ratio} | {time:.2} |",
         row.name,
         count("First"),
         count("InSet"),

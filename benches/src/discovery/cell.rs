@@ -31,7 +31,7 @@ impl Level {
         }
     }
 
-    fn ratio(self, draw: f64) -> f64 {
+    pub fn ratio(self, draw: f64) -> f64 {
         let (low, high) = match self {
             Self::Clear => (10.0f64, 30.0f64),
             Self::Moderate => (3.0, 10.0),
@@ -67,6 +67,8 @@ pub struct Outcome {
     pub answer: Answer,
     /// First effect added, or the verdict.
     pub said: String,
+    /// Effects added besides the hidden ones and those that the report calls indistinguishable.
+    pub extra: usize,
     /// Held-out error over that of the true structure, where the answer is right.
     pub error_ratio: Option<f64>,
     /// Time taken, s.
@@ -90,7 +92,7 @@ fn top(table: &Table, excitation: Excitation) -> Option<f64> {
 }
 
 /// Size at which `kind` reaches `ratio` times the noise, by a few secant steps in the logarithm.
-fn sized(kind: Hidden, seed: u64, excitation: Excitation, ratio: f64) -> Option<f64> {
+pub fn sized(kind: Hidden, seed: u64, excitation: Excitation, ratio: f64) -> Option<f64> {
     let noise = top(&Table::draw(seed, &[]), excitation)?;
     let mut size: f64 = match kind {
         Hidden::ActuatorLag => 2e-3,
@@ -132,12 +134,27 @@ pub fn run(
     let answer = judge(&found, kinds, names);
     let said = found.added.first().cloned().unwrap_or_else(|| format!("{:?}", found.verdict));
     let error_ratio = (answer == Answer::First).then(|| ratio(&family, &found, names)).flatten();
-    Some(Outcome { answer, said, error_ratio, wall_s: found.wall_s })
+    let extra = extra(&found, names);
+    Some(Outcome { answer, said, extra, error_ratio, wall_s: found.wall_s })
+}
+
+/// The effect's name without its form.
+fn stem(effect: &str) -> &str {
+    effect.split(':').next().unwrap_or_default()
+}
+
+fn extra(found: &Discovery, names: &[&str]) -> usize {
+    let excused = |added: &str| {
+        found.ambiguous.iter().any(|set| {
+            let inside = |effect: &str| set.effects.iter().any(|other| other == effect);
+            inside(added) && set.effects.iter().any(|other| names.contains(&stem(other)))
+        })
+    };
+    found.added.iter().filter(|added| !names.contains(&stem(added)) && !excused(added)).count()
 }
 
 fn judge(found: &Discovery, kinds: &[Hidden], names: &[&str]) -> Answer {
-    let stem = |effect: &str| effect.split(':').next().unwrap_or_default().to_owned();
-    let listed = |effect: &String| names.contains(&stem(effect).as_str());
+    let listed = |effect: &String| names.contains(&stem(effect));
     let in_set =
         found.ambiguous.iter().any(|set| set.effects.len() <= 3 && set.effects.iter().any(listed));
     let complete = names.iter().all(|name| found.added.iter().any(|added| stem(added) == *name));

@@ -2,6 +2,9 @@
 
 use super::Parameters;
 
+/// Utilisation of a contact from which it counts as sliding: some contacts only approach 1.
+const BROKEN: f64 = 0.999;
+
 /// Something with a state of its own that answers a displacement of the mass with a force: the
 /// elastic friction contact, a second body behind a coupling.
 ///
@@ -45,6 +48,19 @@ pub trait Element: Sync + Send {
     /// `state` are those of one lane.
     fn force(&self, _p: &[f64], _state: &[f64]) -> Option<f64> {
         None
+    }
+
+    /// Writes 1 where a contact slides in its state, 0 where it holds, at the friction `level`.
+    fn sliding(&self, p: Parameters<'_>, level: &[f64], state: &[f64], sliding: &mut [f64]) {
+        let lanes = level.len();
+        let mut lane = vec![0.0; self.states()];
+        let mut values = vec![0.0; p.parameters()];
+        for (i, sliding) in sliding.iter_mut().enumerate() {
+            lane.iter_mut().enumerate().for_each(|(k, slot)| *slot = state[k * lanes + i]);
+            values.iter_mut().enumerate().for_each(|(k, slot)| *slot = p.get(k)[i]);
+            let force = self.force(&values, &lane).unwrap_or(0.0);
+            *sliding = f64::from(u8::from(force.abs() >= BROKEN * level[i]));
+        }
     }
 
     /// Force at every sample of a measured path: the state's force where there is one, else the mean

@@ -22,6 +22,11 @@ impl<'a> Parameters<'a> {
         &self.values[k * self.lanes..(k + 1) * self.lanes]
     }
 
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.values.len() / self.lanes.max(1)
+    }
+
     /// Number of lanes.
     #[inline]
     pub fn lanes(&self) -> usize {

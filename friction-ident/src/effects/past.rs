@@ -1,5 +1,7 @@
 //! A signal's recent past, lane by lane, for delays.
 
+use std::cell::Cell;
+
 /// Samples of a signal on each lane's own times. Between samples it is linear; before the first one
 /// it has the slope that it was started with.
 #[derive(Clone, Debug, Default)]
@@ -12,6 +14,8 @@ pub struct Past {
     first: Vec<usize>,
     /// Slope of lane `i` before its first sample.
     slope: Vec<f64>,
+    /// How many slots back the last question led: the next one leads nearly as far.
+    back: Vec<Cell<usize>>,
     /// How long samples are kept, s.
     length: f64,
 }
@@ -25,7 +29,8 @@ const MARGIN: usize = 4;
 impl Past {
     /// An empty past that reaches back over `length` s.
     pub fn new(lanes: usize, length: f64) -> Self {
-        Self { lanes, first: vec![0; lanes], slope: vec![0.0; lanes], length, ..Self::default() }
+        let (first, slope, back) = (vec![0; lanes], vec![0.0; lanes], vec![Cell::new(1); lanes]);
+        Self { lanes, first, slope, back, length, ..Self::default() }
     }
 
     /// Whether anybody needs it.
@@ -57,20 +62,30 @@ impl Past {
 
     /// Value of lane `i` at `time`.
     pub fn at(&self, i: usize, time: f64) -> f64 {
-        let (mut low, mut high) = (self.first[i], self.slots() - 1);
+        let (low, high) = (self.first[i], self.slots() - 1);
         if time <= self.time(low, i) {
             return self.value(low, i) + self.slope[i] * (time - self.time(low, i));
         }
         if time >= self.time(high, i) {
             return self.value(high, i);
         }
-        while high - low > 1 {
-            let middle = usize::midpoint(low, high);
-            if self.time(middle, i) <= time { low = middle } else { high = middle }
-        }
-        let (from, to) = (self.time(low, i), self.time(high, i));
+        let slot = self.slot(i, time, low, high);
+        let (from, to) = (self.time(slot, i), self.time(slot + 1, i));
         let share = if to > from { (time - from) / (to - from) } else { 0.0 };
-        self.value(low, i) + share * (self.value(high, i) - self.value(low, i))
+        self.value(slot, i) + share * (self.value(slot + 1, i) - self.value(slot, i))
+    }
+
+    /// The slot between `low` and `high` that `time` follows on.
+    fn slot(&self, i: usize, time: f64, low: usize, high: usize) -> usize {
+        let mut slot = high.saturating_sub(self.back[i].get()).clamp(low, high - 1);
+        while slot > low && self.time(slot, i) > time {
+            slot -= 1;
+        }
+        while slot + 1 < high && self.time(slot + 1, i) <= time {
+            slot += 1;
+        }
+        self.back[i].set(high - slot);
+        slot
     }
 
     /// Time and value of the newest sample of lane `i`.

@@ -138,6 +138,10 @@ impl Element for Presliding {
     fn force(&self, _p: &[f64], state: &[f64]) -> Option<f64> {
         Some(state[0])
     }
+
+    fn sliding(&self, _p: Parameters<'_>, level: &[f64], state: &[f64], sliding: &mut [f64]) {
+        sliding.copy_from_slice(&state[level.len()..]);
+    }
 }
 
 /// What the contact holds at the start: a level that fell takes a loaded contact down with it.
@@ -219,13 +223,18 @@ vectorised! {
         for i in 0..n {
             let r = duration[i];
             let start = at_start(held[i], slides[i], level[i], hold[i]);
-            let elastic = (push[i] - r * start) / (inertia[i] + 0.5 * stiffness[i] * r * r);
-            let trial = start + stiffness[i] * r * elastic;
-            let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
-            let sliding = (push[i] - 0.5 * r * (start + end)) / inertia[i];
-            held[i] = end;
+            let bend = stiffness[i] * r;
+            // The elastic trial, all times its inertia: one division serves both outcomes.
+            let (free, whole) = (push[i] - r * start, inertia[i] + 0.5 * bend * r);
+            let (begin, trial) = (start * whole, start * whole + bend * free);
+            let (limit, most) = (level[i] * whole, hold[i] * whole);
+            let (end, breaks) = at_end(begin, trial, slides[i], limit, most);
+            let slid = level[i].copysign(end);
+            let sliding = push[i] - 0.5 * r * (start + slid);
+            let mean = if breaks { sliding } else { free } / if breaks { inertia[i] } else { whole };
+            held[i] = if breaks { slid } else { start + bend * mean };
             slides[i] = if breaks { 1.0 } else { 0.0 };
-            velocity[i] = if breaks { sliding } else { elastic };
+            velocity[i] = mean;
         }
     }
 }

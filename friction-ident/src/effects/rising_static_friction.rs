@@ -2,6 +2,7 @@
 
 use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
 use crate::axis::Quantity;
+use crate::simd::vectorised;
 
 /// An extra level that grows with the time at rest and fades with speed.
 #[derive(Clone, Copy, Debug)]
@@ -102,27 +103,59 @@ impl Memory for Bond {
         state: &[f64],
         out: &mut Recalled<'_>,
     ) {
-        let lanes = out.bond.len();
-        for (i, bond) in out.bond.iter_mut().enumerate() {
-            let (left, formed, slides) = (state[i], state[lanes + i], state[2 * lanes + i]);
-            *bond = if slides > 0.0 { formed } else { grown(left, m.dwell[i], p.get(0)[i]) };
-        }
+        let (left, rest) = state.split_at(out.bond.len());
+        let (formed, slides) = rest.split_at(out.bond.len());
+        recall(p.get(0), m.dwell, left, formed, slides, out.bond);
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        let lanes = taken.sliding.len();
-        for i in 0..lanes {
-            let (was, is) = (state[2 * lanes + i], taken.sliding[i]);
-            if was > 0.0 && is == 0.0 {
-                state[i] = state[lanes + i] * taken.hump[i];
-            } else if was == 0.0 {
-                state[lanes + i] = grown(state[i], taken.dwell[i], p.get(0)[i]);
-            }
-            state[2 * lanes + i] = is;
+        let (left, rest) = state.split_at_mut(taken.sliding.len());
+        let (formed, slides) = rest.split_at_mut(taken.sliding.len());
+        remember(p.get(0), taken.sliding, taken.dwell, taken.hump, left, formed, slides);
+    }
+}
+
+vectorised! {
+    fn recall(
+        gamma: &[f64],
+        dwell: &[f64],
+        left: &[f64],
+        formed: &[f64],
+        slides: &[f64],
+        bond: &mut [f64],
+    ) {
+        let n = bond.len();
+        let (gamma, dwell, left) = (&gamma[..n], &dwell[..n], &left[..n]);
+        let (formed, slides) = (&formed[..n], &slides[..n]);
+        for i in 0..n {
+            let grown = grown(left[i], dwell[i], gamma[i]);
+            bond[i] = if slides[i] > 0.0 { formed[i] } else { grown };
+        }
+    }
+
+    fn remember(
+        gamma: &[f64],
+        sliding: &[f64],
+        dwell: &[f64],
+        hump: &[f64],
+        left: &mut [f64],
+        formed: &mut [f64],
+        slides: &mut [f64],
+    ) {
+        let n = sliding.len();
+        let (gamma, dwell, hump) = (&gamma[..n], &dwell[..n], &hump[..n]);
+        let (left, formed, slides) = (&mut left[..n], &mut formed[..n], &mut slides[..n]);
+        for i in 0..n {
+            let (was, is) = (slides[i] > 0.0, sliding[i] > 0.0);
+            let grown = grown(left[i], dwell[i], gamma[i]);
+            left[i] = if was && !is { formed[i] * hump[i] } else { left[i] };
+            formed[i] = if was { formed[i] } else { grown };
+            slides[i] = sliding[i];
         }
     }
 }
 
+#[inline]
 fn grown(left: f64, dwell: f64, gamma: f64) -> f64 {
     left + (1.0 - left) * dwell / (dwell + gamma)
 }

@@ -94,6 +94,10 @@ impl Effect for Stribeck {
     }
 
     fn hump(&self, p: Parameters<'_>, level_velocity: &[f64], share: &mut [f64]) -> bool {
+        if self.0 == Form::Rational {
+            rational_share(p.get(1), level_velocity, share);
+            return true;
+        }
         for (i, share) in share.iter_mut().enumerate() {
             *share = self.0.share(p, level_velocity, i);
         }
@@ -114,6 +118,13 @@ impl Form {
 }
 
 vectorised! {
+    fn rational_share(speed: &[f64], velocity: &[f64], share: &mut [f64]) {
+        for ((share, speed), velocity) in share.iter_mut().zip(speed).zip(velocity) {
+            let square = speed * speed;
+            *share = square / (square + velocity * velocity);
+        }
+    }
+
     fn rational(height: &[f64], speed: &[f64], velocity: &[f64], bond: &[f64], level: &mut [f64]) {
         let n = level.len();
         let (height, speed) = (&height[..n], &speed[..n]);

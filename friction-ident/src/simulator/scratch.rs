@@ -7,6 +7,8 @@ pub(super) struct Scratch {
     pub drive: Vec<f64>,
     /// Time of the step that is left.
     pub left: Vec<f64>,
+    /// Its inverse, where the step is one piece.
+    pub rate: Vec<f64>,
     /// Time at the predicted middle.
     pub time: Vec<f64>,
     /// Predicted position in the middle.
@@ -51,6 +53,7 @@ impl Scratch {
         Self {
             drive: lane(),
             left: lane(),
+            rate: lane(),
             time: lane(),
             position: lane(),
             velocity: lane(),

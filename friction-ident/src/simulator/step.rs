@@ -1,14 +1,12 @@
 //! One step of all lanes.
 
 use super::plants::Plants;
+use crate::effects::Parameters;
 use crate::simd::{sign, vectorised};
 
 /// Events within one step after which a lane rests for what is left of it. A step has two in a
 /// reversal; more come from a step that is too long for the plant.
 const MAX_PIECES: usize = 6;
-
-/// Utilisation of a contact from which it counts as sliding: some contacts only approach 1.
-const BROKEN: f64 = 0.999;
 
 impl Plants {
     /// Advances every lane by its `duration` (s) under its `command`, the mean over the step.
@@ -17,15 +15,24 @@ impl Plants {
             self.load_elements();
         }
         self.call_drives(duration, command);
-        self.scratch.left.copy_from_slice(duration);
         if self.contact.is_some() {
+            self.set_duration(duration);
             self.elastic_piece();
-            advance(duration, &mut self.time);
         } else {
+            self.scratch.left.copy_from_slice(duration);
             self.rigid_pieces();
         }
         if self.past.is_kept() {
             self.past.push(&self.time, &self.velocity);
+        }
+    }
+
+    /// An elastic step is one piece: its length and the rate that belongs to it seldom change.
+    fn set_duration(&mut self, duration: &[f64]) {
+        let s = &mut self.scratch;
+        if s.left != duration {
+            s.left.copy_from_slice(duration);
+            invert(duration, &mut s.rate);
         }
     }
 
@@ -62,10 +69,7 @@ impl Plants {
         self.predict();
         self.call_level();
         self.balance(false);
-        if self.solve_contact() {
-            let s = &mut self.scratch;
-            displace(&s.left, &s.mean, &mut s.displacement);
-        } else {
+        if !self.solve_contact() {
             self.newton();
             self.scratch.taken.copy_from_slice(&self.scratch.left);
             self.commit_elements();
@@ -73,11 +77,12 @@ impl Plants {
         let s = &mut self.scratch;
         close_elastic(
             &s.left,
+            &s.rate,
             &s.mean,
-            &s.displacement,
             &mut self.position,
             &mut self.velocity,
             &mut self.slope,
+            &mut self.time,
         );
         self.watch_contact();
     }
@@ -179,25 +184,15 @@ impl Plants {
     fn watch_contact(&mut self) {
         let watched = !self.memories.is_empty() || self.reads_dwell;
         let Some(k) = self.contact.filter(|_| watched) else { return };
-        let active = &self.effects[k];
-        let states = active.element.len() / self.lanes.max(1);
-        let mut lane = vec![0.0; states];
-        for i in 0..self.lanes {
-            for (state, slot) in
-                lane.iter_mut().zip(active.element.iter().skip(i).step_by(self.lanes))
-            {
-                *state = *slot;
-            }
-            let force = active.effect.element().and_then(|e| e.force(&[], &lane)).unwrap_or(0.0);
-            let slides = force.abs() >= BROKEN * self.scratch.level[i];
-            if !slides && self.sliding[i] > 0.0 {
-                self.dwell[i] = 0.0;
-            }
-            self.dwell[i] += if slides { 0.0 } else { self.scratch.left[i] };
-            self.sliding[i] = f64::from(u8::from(slides));
-        }
-        self.scratch.taken.copy_from_slice(&self.scratch.left);
+        let (active, s) = (&self.effects[k], &mut self.scratch);
+        let Some(element) = active.effect.element() else { return };
+        let p = Parameters::new(&active.values, self.lanes);
+        element.sliding(p, &s.level, &active.element, &mut s.taken);
+        count_rest(&s.taken, &s.left, &mut self.sliding, &mut self.dwell);
         if !self.memories.is_empty() {
+            let s = &mut self.scratch;
+            s.taken.copy_from_slice(&s.left);
+            displace(&s.left, &s.mean, &mut s.displacement);
             self.remember();
         }
     }
@@ -207,6 +202,18 @@ vectorised! {
     fn advance(duration: &[f64], time: &mut [f64]) {
         for (time, duration) in time.iter_mut().zip(duration) {
             *time += duration;
+        }
+    }
+
+    /// Time at rest; it begins anew where a slide ends.
+    fn count_rest(slides: &[f64], left: &[f64], sliding: &mut [f64], dwell: &mut [f64]) {
+        let n = slides.len();
+        let (left, sliding, dwell) = (&left[..n], &mut sliding[..n], &mut dwell[..n]);
+        for i in 0..n {
+            let rests = slides[i] == 0.0;
+            let before = if rests && sliding[i] > 0.0 { 0.0 } else { dwell[i] };
+            dwell[i] = before + if rests { left[i] } else { 0.0 };
+            sliding[i] = slides[i];
         }
     }
 
@@ -336,20 +343,29 @@ vectorised! {
 
     fn close_elastic(
         left: &[f64],
+        rate: &[f64],
         mean: &[f64],
-        displacement: &[f64],
         x: &mut [f64],
         v: &mut [f64],
         slope: &mut [f64],
+        time: &mut [f64],
     ) {
         let n = left.len();
-        let (mean, displacement) = (&mean[..n], &displacement[..n]);
-        let (x, v, slope) = (&mut x[..n], &mut v[..n], &mut slope[..n]);
+        let (rate, mean) = (&rate[..n], &mean[..n]);
+        let (x, v, slope, time) = (&mut x[..n], &mut v[..n], &mut slope[..n], &mut time[..n]);
         for i in 0..n {
-            let change = if left[i] > 0.0 { 2.0 * (mean[i] - v[i]) } else { 0.0 };
-            slope[i] = if left[i] > 0.0 { change / left[i] } else { slope[i] };
-            x[i] += displacement[i];
+            let moves = left[i] > 0.0;
+            let change = if moves { 2.0 * (mean[i] - v[i]) } else { 0.0 };
+            slope[i] = if moves { change * rate[i] } else { slope[i] };
+            x[i] += left[i] * mean[i];
             v[i] += change;
+            time[i] += left[i];
+        }
+    }
+
+    fn invert(duration: &[f64], rate: &mut [f64]) {
+        for (rate, duration) in rate.iter_mut().zip(duration) {
+            *rate = 1.0 / duration;
         }
     }
 

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::simulator::{Plants, Start};
 
 /// Windows that are simulated together.
-pub(super) const TOGETHER: usize = 8;
+pub(crate) const TOGETHER: usize = 8;
 
 /// A window on its way to the best start.
 struct Trial {
@@ -25,7 +25,7 @@ struct Trial {
 }
 
 /// Simulates and fits windows of one model.
-pub(super) struct Fitter<'a> {
+pub(crate) struct Fitter<'a> {
     data: &'a Data<'a>,
     plants: Plants,
     /// Lanes per window: the start, its displaced neighbours, and the start at rest.
@@ -34,6 +34,8 @@ pub(super) struct Fitter<'a> {
     step: [f64; 3],
     /// Positions of all lanes, sample after sample.
     track: Vec<f64>,
+    /// Errors at the best start of each window.
+    best: Vec<Vec<f64>>,
 }
 
 impl<'a> Fitter<'a> {
@@ -42,7 +44,19 @@ impl<'a> Fitter<'a> {
         let dx = (2.0 * data.noise).max(1e-9);
         let step = [dx, 4.0 * dx / data.options.length, 0.1];
         let plants = Plants::uniform(model, each * TOGETHER);
-        Self { data, plants, each, step, track: Vec::new() }
+        let best = vec![Vec::new(); TOGETHER];
+        Self { data, plants, each, step, track: Vec::new(), best }
+    }
+
+    /// Gives all lanes the parameters `values` of a model.
+    pub fn set_values(&mut self, values: &[f64]) {
+        (0..self.plants.lanes()).for_each(|i| self.plants.set_values(i, values));
+        self.plants.keep_pasts();
+    }
+
+    /// Errors of window `w` of the last fit at its samples, at the best start.
+    pub fn errors(&self, w: usize, errors: &mut [f64]) {
+        errors.copy_from_slice(&self.best[w]);
     }
 
     pub fn fit(&mut self, windows: &[(usize, Range<usize>)]) -> Vec<Window> {
@@ -97,7 +111,7 @@ impl<'a> Fitter<'a> {
         for k in 0..longest.saturating_sub(1) {
             for step in 0..data.steps {
                 for (w, trial) in trials.iter().enumerate() {
-                    let (length, force) = self.input(trial, k, step);
+                    let (length, force) = data.step(&trial.samples, k, step);
                     duration[w * each..(w + 1) * each].fill(length);
                     command[w * each..(w + 1) * each].fill(force);
                 }
@@ -107,25 +121,16 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// Length and mean command of a step after the window's sample `k`; none behind its end.
-    fn input(&self, trial: &Trial, k: usize, step: usize) -> (f64, f64) {
-        let (data, sample) = (self.data, trial.samples.start + k);
-        if sample + 1 >= trial.samples.end {
-            return (0.0, data.force[trial.samples.end - 1]);
-        }
-        let length = (data.time[sample + 1] - data.time[sample]) / data.steps as f64;
-        let input = data.input();
-        (length, input.mean(sample, step, data.steps))
-    }
-
     /// Takes what the lanes of window `w` say into its trial.
-    fn improve(&self, w: usize, trial: &mut Trial) {
+    fn improve(&mut self, w: usize, trial: &mut Trial) {
         let starts = self.starts(trial);
         let tried = [(0, starts[0]), (3, starts[3])];
         for (lane, start) in tried {
             let squares = self.squares(w, lane, trial);
             if squares < trial.squares {
                 (trial.squares, trial.best) = (squares, start);
+                self.best[w] =
+                    (0..trial.samples.len()).map(|k| self.error(w, lane, trial, k)).collect();
             }
         }
         let improved = trial.best == starts[0] || trial.best == starts[3];

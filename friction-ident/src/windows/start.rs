@@ -12,7 +12,7 @@ use crate::simulator::Input;
 const NEIGHBOURS: usize = 12;
 
 /// The channels of a recording that windows need.
-pub(super) struct Data<'a> {
+pub(crate) struct Data<'a> {
     pub time: &'a [f64],
     pub force: &'a [f64],
     pub position: &'a [f64],
@@ -51,6 +51,24 @@ impl<'a> Data<'a> {
     /// The whole recording as an input.
     pub fn input(&self) -> Input<'a> {
         Input::new(self.time, self.force, self.hold)
+    }
+
+    /// Length (s) and mean command of a step after sample `k` of a piece; none behind its end.
+    pub fn step(&self, piece: &Range<usize>, k: usize, step: usize) -> (f64, f64) {
+        let sample = piece.start + k;
+        if sample + 1 >= piece.end {
+            return (0.0, self.force[piece.end - 1]);
+        }
+        let length = (self.time[sample + 1] - self.time[sample]) / self.steps as f64;
+        (length, self.input().mean(sample, step, self.steps))
+    }
+
+    /// Whether the first samples of a segment show no motion beyond the noise.
+    pub fn stands(&self, segment: usize) -> bool {
+        let within = &self.segments[segment];
+        let first = &self.position[within.start..within.end.min(within.start + NEIGHBOURS)];
+        let (low, high) = first.iter().fold((f64::MAX, f64::MIN), |(l, h), x| (x.min(l), x.max(h)));
+        high - low <= 4.0 * self.noise
     }
 
     /// Windows side by side, as (segment, samples). Only whole ones.
