@@ -31,6 +31,7 @@ impl Level {
         }
     }
 
+    /// A ratio within the level; `draw` from 0 to 1.
     pub fn ratio(self, draw: f64) -> f64 {
         let (low, high) = match self {
             Self::Clear => (10.0f64, 30.0f64),
