@@ -63,6 +63,7 @@ fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve]) -> Drawn {
     let mut chart = ChartBuilder::on(area)
         .caption(axes.title, ("sans-serif", 18))
         .margin(12)
+        .margin_right(28)
         .x_label_area_size(42)
         .y_label_area_size(64)
         .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
@@ -72,6 +73,7 @@ fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve]) -> Drawn {
         .x_desc(axes.x)
         .y_desc(axes.y)
         .light_line_style(TRANSPARENT)
+        .x_label_formatter(&|x| format!("{x:.0}"))
         .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { format!("{y}") })
         .draw()?;
     for (curve, colour) in curves.iter().zip(COLOURS.iter().cycle()) {

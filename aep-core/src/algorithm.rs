@@ -70,7 +70,7 @@ pub struct Start<'a, T: Scalar = f64> {
     /// Fixes every random number of the run.
     pub seed: u64,
     /// Positions (problem coordinates) that take the first slots of the initial population; the
-    /// rest is drawn uniformly.
+    /// rest is drawn uniformly. Those beyond the population size are left out.
     pub initial: &'a [Vec<T>],
 }
 

@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::{self, RunState};
+use crate::run::{Ledger, Run};
 use crate::{
     Algorithm, Budget, CheckpointError, ConfigError, Evaluator, Failures, Method, Observer,
-    Parallel, Problem, Progress, Scalar, Serial, Start, StopReason, TellError,
+    Parallel, Problem, Scalar, Serial, Start, StopReason, TellError,
 };
 
 /// What a run found.
@@ -78,16 +79,6 @@ pub struct Driver<'a, T: Scalar = f64> {
     observers: Vec<Box<dyn Observer<T> + 'a>>,
     stop: Option<&'a AtomicBool>,
     checkpoint: Option<(PathBuf, u64)>,
-}
-
-/// What the driver itself remembers across a resumption.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Ledger {
-    evaluations: u64,
-    failures: Failures,
-    elapsed: Duration,
-    /// Best cost when progress was last seen, and the generation it was seen in.
-    progress: (f64, u64),
 }
 
 impl<'a, T: Scalar> Driver<'a, T> {
@@ -232,108 +223,11 @@ impl<'a, T: Scalar> Driver<'a, T> {
     }
 }
 
-/// The state of the loop.
-struct Run<T> {
-    ledger: Ledger,
-    started: Instant,
-    /// Time used before this part of the run.
-    earlier: Duration,
-    costs: Vec<T>,
-}
-
 impl<T: Scalar> Driver<'_, T> {
     fn save_when_due(&self, algorithm: &dyn Algorithm<T>, run: &Run<T>) -> Option<CheckpointError> {
         let (path, every) = self.checkpoint.as_ref()?;
         let due = algorithm.generation().is_multiple_of(*every);
         if due { run.save(algorithm, path).err() } else { None }
-    }
-}
-
-impl<T: Scalar> Run<T> {
-    fn begun(&self) -> bool {
-        self.ledger.evaluations > 0
-    }
-
-    fn out_of_evaluations(&self, algorithm: &mut dyn Algorithm<T>, budget: &Budget) -> bool {
-        let Some(most) = budget.evaluations else { return false };
-        self.begun() && self.ledger.evaluations + algorithm.ask().len() as u64 > most
-    }
-
-    fn step(
-        &mut self,
-        algorithm: &mut dyn Algorithm<T>,
-        problem: &dyn Problem<T>,
-        evaluator: &dyn Evaluator<T>,
-    ) -> Result<(), TellError> {
-        let points = algorithm.ask();
-        self.costs.resize(points.len(), T::infinity());
-        self.ledger.failures.add(evaluator.evaluate(problem, points, &mut self.costs));
-        algorithm.tell(&self.costs)?;
-        self.ledger.evaluations += self.costs.len() as u64;
-        self.ledger.elapsed = self.earlier + self.started.elapsed();
-        Ok(())
-    }
-
-    /// Errors reach the evaluator as NaN; they are counted as what they are.
-    fn count_errors(&mut self, problem: &dyn Problem<T>, at_start: u64, before: &Failures) {
-        let errors = problem.errors();
-        let new = before.errors + errors.count.saturating_sub(at_start);
-        let failures = &mut self.ledger.failures;
-        let more = new.saturating_sub(failures.errors);
-        failures.errors += more;
-        failures.non_finite = failures.non_finite.saturating_sub(more);
-        failures.first_message = failures.first_message.take().or(errors.first);
-    }
-
-    fn stagnates(&self, generation: u64, most: u64) -> bool {
-        self.begun() && generation.saturating_sub(self.ledger.progress.1) >= most
-    }
-
-    fn note_progress(&mut self, algorithm: &dyn Algorithm<T>, tolerance: f64) {
-        let Some(best) = algorithm.best() else { return };
-        let (reference, _) = self.ledger.progress;
-        let cost = best.cost.as_f64();
-        if reference.is_infinite() || cost < reference - tolerance * reference.abs() {
-            self.ledger.progress = (cost, algorithm.generation());
-        }
-    }
-
-    fn progress<'b>(&'b self, algorithm: &'b dyn Algorithm<T>) -> Progress<'b, T> {
-        Progress {
-            generation: algorithm.generation(),
-            evaluations: self.ledger.evaluations,
-            best: algorithm.best(),
-            failures: &self.ledger.failures,
-            elapsed: self.ledger.elapsed,
-        }
-    }
-
-    fn save(&self, algorithm: &dyn Algorithm<T>, path: &Path) -> Result<(), CheckpointError> {
-        let state = RunState {
-            signature: algorithm.signature(),
-            algorithm: algorithm.save()?,
-            ledger: checkpoint::encode(&self.ledger)?,
-        };
-        checkpoint::write(path, &state)
-    }
-
-    fn outcome(
-        self,
-        algorithm: &dyn Algorithm<T>,
-        stop: StopReason,
-        checkpoint_error: Option<String>,
-    ) -> Outcome<T> {
-        let best = algorithm.best();
-        Outcome {
-            position: best.map_or_else(Vec::new, |best| best.position.to_vec()),
-            cost: best.map_or_else(T::infinity, |best| best.cost),
-            evaluations: self.ledger.evaluations,
-            generations: algorithm.generation(),
-            elapsed: self.ledger.elapsed,
-            stop,
-            failures: self.ledger.failures,
-            checkpoint_error,
-        }
     }
 }
 

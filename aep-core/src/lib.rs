@@ -109,6 +109,7 @@ mod population;
 mod problem;
 pub mod random;
 mod restart;
+mod run;
 mod scalar;
 mod selection;
 mod trace;

@@ -22,7 +22,7 @@ type Make<T> = Arc<dyn Fn(u32) -> Box<dyn Method<T>> + Send + Sync>;
 /// | setting | preset | meaning |
 /// |---|---|---|
 /// | `make` | [`crate::Aep::practical`], 40, 80, 160, ... individuals | the method of run 0, 1, 2, ... |
-/// | `patience` | 50 generations, 1e-10 | when a run counts as stuck |
+/// | `patience` | 100 generations, 1e-15 | when a run counts as stuck |
 ///
 /// **Limits.** Worth it where runs get stuck in local minima and the budget allows for several; a
 /// patience that is too short ends runs that would still have crossed a plateau.
@@ -65,7 +65,7 @@ impl<T: Scalar> Restarting<T> {
         let make = move |run: u32| -> Box<dyn Method<T>> {
             Box::new(resize(method.clone(), 40 << run.min(10)))
         };
-        Self::new(name, make, Stagnation { generations: 50, tolerance: 1e-10 })
+        Self::new(name, make, Stagnation { generations: 100, tolerance: 1e-15 })
     }
 
     /// The same with another patience.

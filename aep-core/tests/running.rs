@@ -168,3 +168,51 @@ fn single_precision_works() {
     let outcome = minimize(&problem, &Aep::paper(), Budget::generations(300), 1).unwrap();
     assert!(outcome.cost < 1e-6, "{outcome:?}");
 }
+
+#[test]
+fn one_component_is_enough_for_every_method() {
+    let domain = Domain::cube(1, -3.0, 4.0).unwrap();
+    let problem = FnProblem::new(domain, |x: &[f64]| (x[0] - 0.5).powi(2));
+    for method in methods() {
+        let budget = Budget::evaluations(8_000).with_target(1e-6);
+        let outcome = minimize(&problem, &*method, budget, 2).unwrap();
+        assert_eq!(outcome.stop, StopReason::Target, "{}", method.name());
+    }
+}
+
+#[test]
+fn given_positions_take_the_first_slots_and_bad_ones_are_refused() {
+    let problem = rosenbrock();
+    let given = vec![vec![1.0, 1.0], vec![-2.0, 3.0]];
+    for method in methods() {
+        let start = Start::new(problem.domain(), 1).with_initial(&given);
+        let mut run = method.start(&start).unwrap();
+        assert_eq!(run.ask().row(0), [1.0, 1.0], "{}", method.name());
+        assert_eq!(run.ask().row(1), [-2.0, 3.0], "{}", method.name());
+        for bad in [vec![1.0], vec![7.0, 0.0], vec![f64::NAN, 0.0]] {
+            let start = Start::new(problem.domain(), 1);
+            assert!(method.start(&start.with_initial(&[bad])).is_err(), "{}", method.name());
+        }
+    }
+}
+
+#[test]
+fn settings_that_cannot_work_are_refused_with_a_hint() {
+    let problem = rosenbrock();
+    let bad: Vec<Box<dyn Method>> = vec![
+        Box::new(Aep::paper().with_beta(0.0, 1.0)),
+        Box::new(Aep::paper().with_beta(f64::NAN, 1.0)),
+        Box::new(Aep::paper().with_population(0)),
+        Box::new(MetaEp::paper().with_sigma(-1.0)),
+        Box::new(De::default().with_population(3)),
+        Box::new(De::default().with_fixed(0.5, 1.5)),
+        Box::new(CmaEs::default().with_population(2)),
+        Box::new(CmaEs::default().with_sigma(f64::INFINITY)),
+    ];
+    for method in bad {
+        let Err(error) = method.start(&Start::new(problem.domain(), 1)) else {
+            panic!("{} was accepted", method.name());
+        };
+        assert_eq!(error.to_string().lines().count(), 2, "{error}");
+    }
+}

@@ -65,7 +65,7 @@ const CASES: [Case; 6] = [
         cost: sphere,
         dimension: 1_000,
         population: 10_000,
-        evaluations: 20_000,
+        evaluations: 60_000,
     },
 ];
 
@@ -151,6 +151,9 @@ fn overhead(criterion: &mut Criterion) {
         let name = format!("{}/population {}", case.name, case.population);
         let mut group: Group<'_> = criterion.benchmark_group(name);
         group.throughput(Throughput::Elements(case.evaluations));
+        if case.population == 10_000 {
+            group.sample_size(10);
+        }
         let sized = |population| (Aep::paper().with_population(population), case);
         let (aep, case) = sized(case.population);
         let meta_ep = MetaEp::paper().with_population(case.population);

@@ -57,7 +57,8 @@ fn model(i: usize) -> Model {
 }
 
 /// The same step as the simulator's, for one plant with everything known in advance.
-#[inline]
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn step(p: &Plant, force: f64, x: f64, v: f64, slope: f64, held: f64) -> (f64, f64, f64, f64) {
     let predicted = v + 0.5 * STEP * slope;
     let square = p.speed * p.speed;
@@ -118,7 +119,8 @@ impl Lanes {
         }
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
     fn advance(&mut self, force: f64) {
         let n = self.x.len();
         let [mass, coulomb, viscous, hump, speed, stiffness] =

@@ -52,13 +52,15 @@ fn detect() -> InstructionSet {
 }
 
 /// `x` within `+-cap`; unlike `clamp` it takes any `cap`.
-#[inline]
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 pub(crate) fn limited(x: f64, cap: f64) -> f64 {
     x.max(-cap).min(cap)
 }
 
 /// -1, 0 or 1.
-#[inline]
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 pub(crate) fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0

@@ -9,7 +9,7 @@ use crate::ladder::Ladder;
 use crate::report::Discovery;
 use crate::screen::{self, Screened, Screening};
 use crate::split::Split;
-use crate::{diagnosis, search, verdict, where_it_fails};
+use crate::{diagnosis, noise, search, verdict, where_it_fails};
 
 /// What is asked of a discovery.
 #[derive(Debug)]
@@ -214,7 +214,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         loop {
             last_screening = self.screen();
             self.ladder.rank(&last_screening);
-            if self.ladder.added().len() >= self.settings.most || self.stopped() {
+            let enough = self.ladder.added().len() >= self.settings.most;
+            if enough || self.stopped() || self.at_floor() {
                 break;
             }
             let Some(chosen) = self.best_addition(&last_screening) else { break };
@@ -242,6 +243,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
         let weights = weights(self.family.doubt(), &self.fit.residual);
         screen::screen(self.family, &self.fit, &self.screening(&candidates, &weights))
+    }
+
+    /// Whether what has been added leaves no more than the noise floor: from there on an effect could
+    /// only fit noise.
+    fn at_floor(&self) -> bool {
+        let floor = || noise::floor_of(self.family, &self.fit.residual);
+        !self.ladder.added().is_empty() && square(&self.fit).sqrt() <= AT_FLOOR * floor()
     }
 
     fn screening<'b>(&'b self, candidates: &'b [usize], weights: &'b [f64]) -> Screening<'b> {
@@ -275,13 +283,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 gain: candidate.gain,
                 p_value: candidate.p_value,
             });
-            let main = self.tried(candidate.term, &candidate.values, candidate.p_value);
-            let best = self.best_form(main);
-            let held_out = self.split.rms(&best.fit.residual).validation;
-            if held_out < enough && self.confirmed(&best.fit) {
-                tried.push(best);
-            }
+            tried.push(self.tried(candidate.term, &candidate.values, candidate.p_value));
         }
+        let tried = self.with_forms(tried);
+        let helps = |tried: &Tried| {
+            self.split.rms(&tried.fit.residual).validation < enough && self.confirmed(&tried.fit)
+        };
+        let mut tried: Vec<Tried> = tried.into_iter().filter(helps).collect();
         tried.sort_by(|a, b| a.square.total_cmp(&b.square));
         let before = square(&self.fit);
         let chosen = Self::simplest(&tried, before)?;
@@ -289,7 +297,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             return None;
         }
         let best = tried.swap_remove(chosen);
-        let rivals = tried.iter().filter(|rival| as_good(rival, &best, before));
+        let rivals =
+            tried.iter().filter(|rival| as_good(rival, &best, before) && !self.at_bound(rival));
         self.ladder.rivals(best.term, rivals.map(|rival| rival.term).collect());
         Some(best)
     }
@@ -311,18 +320,39 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         Tried { term, square: square(&fit), fit, p_value }
     }
 
+    /// Whether a parameter of the tried term ended at a limit of its search: what the term says beyond
+    /// a simpler one is then not in the data.
+    fn at_bound(&self, tried: &Tried) -> bool {
+        let model = &tried.fit.model;
+        let values = &model.values[model.range(self.family, model.terms.len() - 1)];
+        let parameters = &self.family.terms()[tried.term].parameters;
+        parameters.iter().zip(values).any(|(parameter, value)| {
+            let near = |limit: f64| (value - limit).abs() <= 1e-3 * limit.abs().max(1e-12);
+            near(parameter.lower) || near(parameter.upper)
+        })
+    }
+
+    /// Every candidate in its main form, or in another one that is clearly better. Other forms are only
+    /// looked at where the main form is in the running.
+    fn with_forms(&self, tried: Vec<Tried>) -> Vec<Tried> {
+        let before = square(&self.fit);
+        let best = tried.iter().map(|main| main.square).fold(before, f64::min);
+        let hopeful = before - HOPEFUL * (before - best);
+        let better = |main: Tried| if main.square <= hopeful { self.best_form(main) } else { main };
+        tried.into_iter().map(better).collect()
+    }
+
     /// The main form of an effect, or another one that is clearly better.
     fn best_form(&self, main: Tried) -> Tried {
         let weights = weights(self.family.doubt(), &self.fit.residual);
-        let least = main.square * BETTER_FORM;
+        let screening = self.screening(&[], &weights);
         (0..self.family.terms().len())
             .filter(|&form| self.family.form_of(form) == Some(main.term))
             .filter_map(|form| {
-                let screening = self.screening(&[], &weights);
                 let values = screen::best_values(self.family, &self.fit, &screening, form)?;
                 Some(self.tried(form, &values, main.p_value))
             })
-            .filter(|form| form.square < least)
+            .filter(|form| form.square < main.square * BETTER_FORM)
             .min_by(|a, b| a.square.total_cmp(&b.square))
             .unwrap_or(main)
     }
@@ -412,7 +442,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
 /// Candidates that are re-identified per rung.
 const MOST_TRIED: usize = 4;
-/// A rival leaves at most this share of what the best candidate removed.
+/// A rival's squared error is larger by at most this share.
 const RIVAL: f64 = 0.05;
 
 /// The same in standard errors of the difference.
@@ -420,6 +450,11 @@ const STANDARD_ERRORS: f64 = 1.0;
 /// Another form of an effect is taken where it leaves at most this share of the main form's squared
 /// error.
 const BETTER_FORM: f64 = 0.8;
+/// A model is at the noise floor where its error exceeds it by at most this factor.
+const AT_FLOOR: f64 = 1.05;
+/// Other forms are tried where the main form removes at least this share of what the best candidate
+/// removes.
+const HOPEFUL: f64 = 0.4;
 /// Largest p-value of a structure along time that is taken for real.
 const IN_TIME: f64 = 0.005;
 /// Pieces of time for the standard error of a mean.
@@ -440,15 +475,15 @@ fn square(fit: &Fit) -> f64 {
 }
 
 /// Whether the data cannot tell a rival from the best: the rival removes half as much at least,
-/// and its squared error is larger by less than a few per cent of what was removed or by less
-/// than the differences between pieces of time make likely. All data count: what a handful of
+/// and its squared error is larger by less than a few per cent or by less than the differences
+/// between pieces of time make likely. All data count: what a handful of
 /// parameters gains by being fitted is small against what a third of the data leaves to chance.
 fn as_good(rival: &Tried, best: &Tried, before: f64) -> bool {
     let (removed, more) = (before - best.square, rival.square - best.square);
     let pairs = rival.fit.residual.iter().zip(&best.fit.residual);
     let differences: Vec<f64> = pairs.map(|(a, b)| a * a - b * b).collect();
     let by_chance = STANDARD_ERRORS * error_of_mean(&differences);
-    more < 0.5 * removed && (more < RIVAL * removed || more < by_chance)
+    more < 0.5 * removed && (more < RIVAL * best.square || more < by_chance)
 }
 
 /// Standard error of the mean of autocorrelated values, from the means of contiguous pieces.

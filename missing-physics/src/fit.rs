@@ -10,9 +10,9 @@ use rayon::prelude::*;
 use crate::basis::{dot, gram, solve};
 use crate::family::{Fitted, ModelFamily, Parameter};
 
-const MAX_STEPS: usize = 40;
+const MAX_STEPS: usize = 25;
 /// Relative fall of the cost below which the fit has converged.
-const CONVERGED: f64 = 1e-10;
+const CONVERGED: f64 = 1e-7;
 /// Pull towards the start, relative to the curvature of each parameter: what the data do not
 /// determine (an offset against a direction-dependent level) stays where it was, what they do is
 /// not noticeably moved.

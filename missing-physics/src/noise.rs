@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use crate::family::Coordinate;
+use crate::family::{Coordinate, ModelFamily};
 
 /// Neighbours of each point. Few: farther ones differ by structure that the model lacks, and the line
 /// through them would undershoot at distance zero.
@@ -16,6 +16,13 @@ const NEIGHBOURS: usize = 3;
 const MOST_POINTS: usize = 4000;
 /// Neighbours closer in time than this share of the recording share the same noise.
 const APART: f64 = 0.01;
+
+/// [`floor`] over the coordinates that make up a family's state.
+pub fn floor_of<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> f64 {
+    let state: Vec<Coordinate> =
+        family.coordinates().iter().filter(|coordinate| coordinate.state).cloned().collect();
+    floor(residual, &state)
+}
 
 /// Standard deviation of what cannot be explained by any smooth function of the coordinates, in
 /// the unit of the residual; 0 where there are too few points to tell.

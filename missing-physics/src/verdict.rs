@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::family::{Coordinate, ModelFamily};
+use crate::family::ModelFamily;
 use crate::fit::Fit;
 use crate::ladder::{self, Ladder};
 use crate::noise;
@@ -46,8 +46,7 @@ pub fn report<F: ModelFamily + ?Sized>(
     let ambiguous = ladder.ambiguous(evidence.screened, evidence.alpha);
     let (rungs, ranking, added, split) = ladder.into_parts();
     let quantity = family.quantity();
-    let state: Vec<Coordinate> = family.coordinates().iter().filter(|c| c.state).cloned().collect();
-    let floor = noise::floor(&evidence.last.residual, &state);
+    let floor = noise::floor_of(family, &evidence.last.residual);
     let mut noise_floor = family.noise();
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
 

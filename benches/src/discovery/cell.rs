@@ -31,6 +31,7 @@ impl Level {
         }
     }
 
+    /// A ratio within the level; `draw` from 0 to 1.
     pub fn ratio(self, draw: f64) -> f64 {
         let (low, high) = match self {
             Self::Clear => (10.0f64, 30.0f64),
@@ -108,6 +109,8 @@ pub fn sized(kind: Hidden, seed: u64, excitation: Excitation, ratio: f64) -> Opt
             Hidden::ActuatorLag => size.min(8e-3),
             // Beyond this the contact is the machine; below it the encoder sees nothing.
             Hidden::Presliding | Hidden::Dahl => size.clamp(3e-6, 1.5e-4),
+            // A hump far above the Coulomb level is stick-slip from beginning to end.
+            Hidden::Stribeck | Hidden::GaussianStribeck => size.min(8.0),
             _ => size.min(60.0),
         };
     }

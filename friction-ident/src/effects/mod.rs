@@ -19,6 +19,7 @@ pub mod coulomb;
 pub mod drift;
 pub mod encoder;
 pub mod flexible_coupling;
+pub mod formula;
 pub mod frictional_memory;
 pub mod gravity_pendulum;
 pub mod input_delay;

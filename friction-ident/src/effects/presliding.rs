@@ -145,14 +145,16 @@ impl Element for Presliding {
 }
 
 /// What the contact holds at the start: a level that fell takes a loaded contact down with it.
-#[inline]
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn at_start(held: f64, slides: f64, level: f64, hold: f64) -> f64 {
     let cap = if slides > 0.0 { level } else { hold.max(level) };
     limited(held, cap)
 }
 
 /// Contact force at the end of a step that is elastic at first, and whether it slides then.
-#[inline]
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn at_end(start: f64, trial: f64, slides: f64, level: f64, hold: f64) -> (f64, bool) {
     // Once it slides it goes on sliding until the force turns back.
     let goes_on = slides > 0.0 && trial * start >= start * start;

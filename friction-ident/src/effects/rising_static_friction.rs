@@ -155,7 +155,8 @@ vectorised! {
     }
 }
 
-#[inline]
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn grown(left: f64, dwell: f64, gamma: f64) -> f64 {
     left + (1.0 - left) * dwell / (dwell + gamma)
 }

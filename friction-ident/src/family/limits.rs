@@ -139,7 +139,8 @@ impl Limits {
                 0.05 * self.force.rms / (0.1 * self.stroke),
                 self.force.rms / self.position_noise.max(1e-6 * self.stroke),
             ),
-            Quantity::Time => (0.05 * self.interval, f64::INFINITY),
+            // What settles within two samples cannot be told from what is there at once.
+            Quantity::Time => (2.0 * self.interval, f64::INFINITY),
             _ => (low, high),
         };
         let linear = parameter.scale == effects::Scale::Linear;

@@ -33,6 +33,9 @@ use crate::effects::ripple::Sweep;
 use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
 
+/// Effects that a comparison of forces cannot see: a gain of the motor scales all parameters alike
+/// and is known only where the mass is.
+const INVISIBLE: [&str; 1] = ["motor-gain"];
 /// Periods per sweep of a ripple's trials.
 const SWEEP: usize = 64;
 
@@ -350,6 +353,9 @@ impl ModelFamily for FrictionFamily {
         let Some(effect) = term.checked_sub(1).map(|index| self.effects[index]) else {
             return false;
         };
+        if INVISIBLE.contains(&effect.about().name) {
+            return false;
+        }
         self.model(model).and_then(|plant| plant.with_effect(effect)).is_ok()
     }
 

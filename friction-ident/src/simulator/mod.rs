@@ -1,12 +1,12 @@
 //! Simulation of one or many plants: implicit in the set-valued friction, second order between events.
 //!
 //! # The step
-//! Over a step `r` the mean force decides: with the displacement `D = r (v + v1) / 2` the momentum
-//! balance is `m (v1 - v) = r (F - S - L d) - c (D - r v_p) - r (f0 + f1(D)) / 2`, where `F` is the
-//! drive's mean force, `S` and `c` the smooth forces and their slope at the predicted middle
-//! (`x + r v / 2`, `v_p`), `L d` the rigid friction and `f` the force of elastic elements. It is one
-//! equation for `D` with a left side that grows with `D`: one solution at any step, without energy
-//! from nowhere.
+//! Over a step `r` the mean force decides: with the mean velocity `u = (v + v1) / 2` the momentum
+//! balance is `2 m (u - v) = r (F - S - L d - c (u - v_p) - f(r u))`, where `F` is the drive's mean
+//! force, `S` and `c` the smooth forces and their slope at the predicted middle (`x + r v / 2`, `v_p`),
+//! `L d` the rigid friction and `f` the mean force of elastic elements, which grows with the
+//! displacement. It is one equation for `u` with a left side that grows with `u`: one solution at any
+//! step, without energy from nowhere.
 //!
 //! * Position forces enter as in the leapfrog scheme, elastic elements as in the trapezoidal rule:
 //!   neither lets the energy of an oscillation grow.
@@ -17,6 +17,7 @@
 
 mod error;
 mod hooks;
+mod kernels;
 mod plants;
 mod run;
 mod scratch;

@@ -38,6 +38,15 @@ fn halving_the_step_divides_the_error_by_four_through_stops_and_reversals() {
     assert_second_order("contact", &plant(5.0, &[coulomb, viscous, contact]), 2e-3);
     let lag: (&str, &[(&str, f64)]) = ("actuator-lag", &[("tau", 0.02)]);
     assert_second_order("lag", &plant(5.0, &[coulomb, viscous, lag]), 8e-3);
+    let delay: (&str, &[(&str, f64)]) = ("input-delay", &[("T_d", 0.0137)]);
+    assert_second_order("delay", &plant(5.0, &[coulomb, viscous, delay]), 8e-3);
+    let behind: &[(&str, f64)] = &[("m_L", 2.0), ("f", 8.0), ("zeta", 0.05)];
+    let coupling: (&str, &[(&str, f64)]) = ("flexible-coupling", behind);
+    assert_second_order("coupling", &plant(5.0, &[coulomb, viscous, coupling]), 2e-3);
+    let lugre: (&str, &[(&str, f64)]) = ("presliding:lugre", &[("k_t", 2e4), ("sigma_1", 20.0)]);
+    assert_second_order("lugre", &plant(5.0, &[coulomb, viscous, lugre]), 1e-3);
+    let memory: (&str, &[(&str, f64)]) = ("frictional-memory", &[("tau_L", 0.013)]);
+    assert_second_order("memory", &plant(5.0, &[coulomb, viscous, stribeck, memory]), 4e-3);
 }
 
 #[test]

@@ -1,0 +1,218 @@
+//! The arithmetic of a step, lane by lane. See the module above for the equations.
+
+use crate::simd::{sign, vectorised};
+
+vectorised! {
+    pub(super) fn advance(duration: &[f64], time: &mut [f64]) {
+        for (time, duration) in time.iter_mut().zip(duration) {
+            *time += duration;
+        }
+    }
+
+    /// Time at rest; it begins anew where a slide ends.
+    pub(super) fn count_rest(slides: &[f64], left: &[f64], sliding: &mut [f64], dwell: &mut [f64]) {
+        let n = slides.len();
+        let (left, sliding, dwell) = (&left[..n], &mut sliding[..n], &mut dwell[..n]);
+        for i in 0..n {
+            let rests = slides[i] == 0.0;
+            let before = if rests && sliding[i] > 0.0 { 0.0 } else { dwell[i] };
+            dwell[i] = before + if rests { left[i] } else { 0.0 };
+            sliding[i] = slides[i];
+        }
+    }
+
+    pub(super) fn displace(left: &[f64], mean: &[f64], displacement: &mut [f64]) {
+        for ((displacement, left), mean) in displacement.iter_mut().zip(left).zip(mean) {
+            *displacement = left * mean;
+        }
+    }
+
+    pub(super) fn divide(push: &[f64], inertia: &[f64], mean: &mut [f64]) {
+        for ((mean, push), inertia) in mean.iter_mut().zip(push).zip(inertia) {
+            *mean = push / inertia;
+        }
+    }
+
+    pub(super) fn predict(
+        x: &[f64],
+        v: &[f64],
+        slope: &[f64],
+        left: &[f64],
+        time: &[f64],
+        middle: &mut [f64],
+        predicted: &mut [f64],
+        direction: &mut [f64],
+        when: &mut [f64],
+    ) {
+        let n = x.len();
+        let (v, slope, left, time) = (&v[..n], &slope[..n], &left[..n], &time[..n]);
+        let (middle, predicted) = (&mut middle[..n], &mut predicted[..n]);
+        let (direction, when) = (&mut direction[..n], &mut when[..n]);
+        for i in 0..n {
+            let half = 0.5 * left[i];
+            when[i] = time[i] + half;
+            let s = sign(v[i]);
+            middle[i] = x[i] + half * v[i];
+            // The prediction stays on this side of a stop: what comes behind it is another piece.
+            let along = (v[i] + half * slope[i]) * s;
+            predicted[i] = if along < 0.0 { 0.0 } else { along * s };
+            direction[i] = s;
+        }
+    }
+
+    /// Direction in which a lane at rest is pushed.
+    pub(super) fn direct(v: &[f64], drive: &[f64], force: &[f64], elements: &[f64], direction: &mut [f64]) {
+        let n = v.len();
+        let (drive, force) = (&drive[..n], &force[..n]);
+        let (elements, direction) = (&elements[..n], &mut direction[..n]);
+        for i in 0..n {
+            let pushed = sign(drive[i] - force[i] - elements[i]);
+            direction[i] = if v[i] == 0.0 { pushed } else { direction[i] };
+        }
+    }
+
+    /// Lanes at rest with less than the level upon them spend what is left at rest.
+    pub(super) fn rest(
+        v: &[f64],
+        drive: &[f64],
+        force: &[f64],
+        elements: &[f64],
+        level: &[f64],
+        left: &mut [f64],
+        dwell: &mut [f64],
+        time: &mut [f64],
+        taken: &mut [f64],
+    ) {
+        let n = v.len();
+        let (drive, force, elements) = (&drive[..n], &force[..n], &elements[..n]);
+        let (level, left, dwell) = (&level[..n], &mut left[..n], &mut dwell[..n]);
+        let (time, taken) = (&mut time[..n], &mut taken[..n]);
+        for i in 0..n {
+            let applied = drive[i] - force[i] - elements[i];
+            let rests = v[i] == 0.0 && applied.abs() <= level[i];
+            let spent = if rests { left[i] } else { 0.0 };
+            dwell[i] += spent;
+            time[i] += spent;
+            taken[i] = spent;
+            left[i] -= spent;
+        }
+    }
+
+    pub(super) fn balance(
+        mass: &[f64],
+        v: &[f64],
+        left: &[f64],
+        drive: &[f64],
+        force: &[f64],
+        damping: &[f64],
+        predicted: &[f64],
+        level: &[f64],
+        direction: &[f64],
+        inertia: &mut [f64],
+        push: &mut [f64],
+    ) {
+        let n = mass.len();
+        let (v, left, drive, force) = (&v[..n], &left[..n], &drive[..n], &force[..n]);
+        let (damping, predicted) = (&damping[..n], &predicted[..n]);
+        let (level, direction) = (&level[..n], &direction[..n]);
+        let (inertia, push) = (&mut inertia[..n], &mut push[..n]);
+        for i in 0..n {
+            let slope = if damping[i] < 0.0 { 0.0 } else { damping[i] };
+            let others = drive[i] - force[i] - level[i] * direction[i] + slope * predicted[i];
+            inertia[i] = 2.0 * mass[i] + left[i] * slope;
+            push[i] = 2.0 * mass[i] * v[i] + left[i] * others;
+        }
+    }
+
+    pub(super) fn newton(
+        left: &[f64],
+        inertia: &[f64],
+        push: &[f64],
+        elements: &[f64],
+        stiffness: &[f64],
+        mean: &mut [f64],
+        displacement: &mut [f64],
+    ) {
+        let n = left.len();
+        let (inertia, push, elements) = (&inertia[..n], &push[..n], &elements[..n]);
+        let (stiffness, mean) = (&stiffness[..n], &mut mean[..n]);
+        let displacement = &mut displacement[..n];
+        for i in 0..n {
+            let r = left[i];
+            let linear = elements[i] - stiffness[i] * displacement[i];
+            mean[i] = (push[i] - r * linear) / (inertia[i] + r * r * stiffness[i]);
+            displacement[i] = r * mean[i];
+        }
+    }
+
+    pub(super) fn close_elastic(
+        left: &[f64],
+        rate: &[f64],
+        mean: &[f64],
+        x: &mut [f64],
+        v: &mut [f64],
+        slope: &mut [f64],
+        time: &mut [f64],
+    ) {
+        let n = left.len();
+        let (rate, mean) = (&rate[..n], &mean[..n]);
+        let (x, v, slope, time) = (&mut x[..n], &mut v[..n], &mut slope[..n], &mut time[..n]);
+        for i in 0..n {
+            let moves = left[i] > 0.0;
+            let change = if moves { 2.0 * (mean[i] - v[i]) } else { 0.0 };
+            slope[i] = if moves { change * rate[i] } else { slope[i] };
+            x[i] += left[i] * mean[i];
+            v[i] += change;
+            time[i] += left[i];
+        }
+    }
+
+    pub(super) fn invert(duration: &[f64], rate: &mut [f64]) {
+        for (rate, duration) in rate.iter_mut().zip(duration) {
+            *rate = 1.0 / duration;
+        }
+    }
+
+    /// Takes the piece, up to the stop where there is one in it.
+    pub(super) fn close_rigid(
+        mean: &[f64],
+        direction: &[f64],
+        left: &mut [f64],
+        displacement: &mut [f64],
+        taken: &mut [f64],
+        x: &mut [f64],
+        v: &mut [f64],
+        slope: &mut [f64],
+        dwell: &mut [f64],
+        sliding: &mut [f64],
+        time: &mut [f64],
+    ) {
+        let n = mean.len();
+        let (direction, left) = (&direction[..n], &mut left[..n]);
+        let (displacement, taken) = (&mut displacement[..n], &mut taken[..n]);
+        let (x, v, slope) = (&mut x[..n], &mut v[..n], &mut slope[..n]);
+        let (dwell, sliding, time) = (&mut dwell[..n], &mut sliding[..n], &mut time[..n]);
+        for i in 0..n {
+            let (r, v0) = (left[i], v[i]);
+            let moves = r > 0.0;
+            let change = 2.0 * (mean[i] - v0);
+            let end = v0 + change;
+            let stops = moves && end * direction[i] <= 0.0;
+            // A lane that cannot leave its rest, because the level rises with speed, stays there.
+            let held = stops && v0 == 0.0;
+            // Constant acceleration up to the stop.
+            let share = if stops && !held { -v0 / change } else { 1.0 };
+            let spent = share * r;
+            let moved = if stops { 0.5 * v0 * spent } else { r * mean[i] };
+            taken[i] = if moves { spent } else { 0.0 };
+            displacement[i] = if moves { moved } else { 0.0 };
+            x[i] += displacement[i];
+            time[i] += taken[i];
+            slope[i] = if held { 0.0 } else if moves { change / r } else { slope[i] };
+            dwell[i] = if held { dwell[i] + r } else if stops { 0.0 } else { dwell[i] };
+            v[i] = if stops { 0.0 } else if moves { end } else { v0 };
+            sliding[i] = if moves { if stops { 0.0 } else { 1.0 } } else { sliding[i] };
+            left[i] = if stops && !held { r - spent } else { 0.0 };
+        }
+    }
+}
