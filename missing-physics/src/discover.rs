@@ -374,13 +374,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         where_it_fails::times(self.family, &view)
     }
 
-    /// Whether no other view of the held-out error contradicts: what really acts on the plant helps
+    /// Whether no other view of the error contradicts: what really acts on the plant helps
     /// in every view.
     fn confirmed(&self, fit: &Fit) -> bool {
         let before = self.ladder.views();
         let after = self.family.views(&fit.model, &self.split);
         after.iter().all(|(name, error)| {
-            before.get(name).is_none_or(|old| error.validation <= CONTRADICTION * old.validation)
+            before.get(name).is_none_or(|old| {
+                error.validation <= CONTRADICTION * old.validation
+                    || error.fit <= CONTRADICTION * old.fit
+            })
         })
     }
 
@@ -497,7 +500,8 @@ fn error_of_mean(values: &[f64]) -> f64 {
     (square / (count * (count - 1.0).max(1.0))).sqrt()
 }
 
-/// Another view contradicts an effect where its held-out error grows by this factor.
+/// Another view contradicts an effect where its error grows by this factor on held-out data and on
+/// fitted data as well: one of them alone is a matter of a few windows.
 const CONTRADICTION: f64 = 1.05;
 
 /// Weights for screening: a point whose doubt exceeds the usual residual counts accordingly less.
