@@ -92,7 +92,7 @@ const DEFAULT: &str = "../shared/data/xl330";
 fn main() -> Result<(), Failure> {
     let folder = match std::env::args().nth(1) {
         Some(folder) => folder,
-        None if std::path::Path::new(DEFAULT).is_dir() => DEFAULT.into(),
+        None if Path::new(DEFAULT).is_dir() => DEFAULT.into(),
         None => {
             println!("skipped: the XL330 recordings are not at {DEFAULT}; give their folder");
             return Ok(());
