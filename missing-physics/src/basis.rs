@@ -22,6 +22,11 @@ pub fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
 }
 
+/// A column with every entry times its weight.
+pub fn weighed(column: &[f64], weights: &[f64]) -> Vec<f64> {
+    column.iter().zip(weights).map(|(value, weight)| value * weight).collect()
+}
+
 /// Orthonormal columns that span what has been added.
 #[derive(Clone, Debug, Default)]
 pub struct Basis {

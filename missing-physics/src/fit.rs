@@ -7,7 +7,7 @@
 use aep_core::Scale;
 use rayon::prelude::*;
 
-use crate::basis::{dot, gram, solve};
+use crate::basis::{dot, gram, solve, weighed};
 use crate::family::{Fitted, ModelFamily, Parameter};
 
 const MAX_STEPS: usize = 25;
@@ -87,9 +87,7 @@ fn step<F: ModelFamily + ?Sized>(
     damping: &mut f64,
 ) -> Option<Fit> {
     let parameters: Vec<&Parameter> = fit.model.parameters(family).map(|(_, p)| p).collect();
-    let weigh = |column: &[f64]| -> Vec<f64> {
-        column.iter().zip(weights).map(|(value, weight)| value * weight).collect()
-    };
+    let weigh = |column: &[f64]| weighed(column, weights);
     let columns: Vec<Vec<f64>> = fit.jacobian.iter().map(|column| weigh(column)).collect();
     let target = weigh(&fit.residual);
     let mut moment: Vec<f64> = columns.iter().map(|column| dot(column, &target)).collect();

@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::basis::{Basis, add_scaled, constrained, dot, gram, solve};
+use crate::basis::{Basis, add_scaled, constrained, dot, gram, solve, weighed};
 use crate::evidence::Evidence;
 use crate::family::ModelFamily;
 use crate::fit::Fit;
@@ -97,9 +97,7 @@ pub fn screen<F: ModelFamily + ?Sized>(
     fit: &Fit,
     screening: &Screening<'_>,
 ) -> Vec<Screened> {
-    let weigh = |column: &[f64]| -> Vec<f64> {
-        column.iter().zip(screening.weights).map(|(value, weight)| value * weight).collect()
-    };
+    let weigh = |column: &[f64]| weighed(column, screening.weights);
     let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
     let trials = trials(family, fit, screening, &own);
     let residual = weigh(&fit.residual);
@@ -146,9 +144,7 @@ pub fn best_values<F: ModelFamily + ?Sized>(
     term: usize,
 ) -> Option<Vec<f64>> {
     let one = Screening { candidates: &[term], ..*screening };
-    let weigh = |column: &[f64]| -> Vec<f64> {
-        column.iter().zip(one.weights).map(|(value, weight)| value * weight).collect()
-    };
+    let weigh = |column: &[f64]| weighed(column, one.weights);
     let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
     let trials = trials(family, fit, &one, &own);
     let falls = falls(&trials, &[weigh(&fit.residual)]);

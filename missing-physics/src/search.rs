@@ -7,7 +7,7 @@
 
 use aep_core::{Aep, Budget, Domain, Driver, FnProblem, Method, Scale, Start};
 
-use crate::basis::{Basis, constrained, dot, gram};
+use crate::basis::{Basis, constrained, dot, gram, weighed};
 use crate::family::{Fitted, ModelFamily, Parameter, Role};
 use crate::fit::{self, Fit, weighted_square};
 use crate::shapes::{amplitudes, assemble};
@@ -88,9 +88,7 @@ pub fn shaped<F: ModelFamily + ?Sized>(
     if shape.is_empty() {
         return fit.model.with(term, values);
     }
-    let weigh = |column: &[f64]| -> Vec<f64> {
-        column.iter().zip(weights).map(|(value, weight)| value * weight).collect()
-    };
+    let weigh = |column: &[f64]| weighed(column, weights);
     let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
     let mut residual = weigh(&fit.residual);
     own.project_out(&mut residual);
@@ -198,9 +196,7 @@ fn quadratic<'a, F: ModelFamily + ?Sized>(
     weights: &[f64],
 ) -> impl Fn(&[f64]) -> f64 + 'a {
     let fit = fit::evaluate(family, start.clone(), weights);
-    let weigh = |column: &Vec<f64>| -> Vec<f64> {
-        column.iter().zip(weights).map(|(value, weight)| value * weight).collect()
-    };
+    let weigh = |column: &Vec<f64>| weighed(column, weights);
     let columns: Vec<Vec<f64>> = natural(&fit, parameters).iter().map(weigh).collect();
     let residual = weigh(&fit.residual);
     let moment: Vec<f64> = columns.iter().map(|column| dot(column, &residual)).collect();
@@ -224,9 +220,7 @@ fn projected<F: ModelFamily + ?Sized>(
     let amplitudes: Vec<usize> =
         (0..parameters.len()).filter(|&k| parameters[k].role == Role::Amplitude).collect();
     let natural = natural(&fit, parameters);
-    let weigh = |column: &Vec<f64>| -> Vec<f64> {
-        column.iter().zip(weights).map(|(value, weight)| value * weight).collect()
-    };
+    let weigh = |column: &Vec<f64>| weighed(column, weights);
     let columns: Vec<Vec<f64>> = amplitudes.iter().map(|&k| weigh(&natural[k])).collect();
     // The residual as it would be with all amplitudes at 0, to first order, so that the solution
     // is the amplitudes themselves and their signs can be constrained.
