@@ -121,6 +121,24 @@ impl<'a> MeasuredMotion<'a> {
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
+
+    /// Mean direction of motion from half a step before each sample to half a step after: the sign of
+    /// the velocity, except where it changes. A sign at the sample alone would be off by up to half a step,
+    /// which at a reversal is a pulse of the whole friction.
+    fn sliding(&self) -> Vec<f64> {
+        let mut mean: Vec<f64> = self.velocity.iter().map(|v| sign(*v)).collect();
+        for segment in &self.segments {
+            let v = &self.velocity[segment.clone()];
+            for k in 1..v.len().saturating_sub(1) {
+                let half = |other: f64| mean_sign(f64::midpoint(v[k], other), v[k]);
+                let changes = v[k - 1] * v[k] < 0.0 || v[k] * v[k + 1] < 0.0;
+                if changes {
+                    mean[segment.start + k] = 0.5 * (half(v[k - 1]) + half(v[k + 1]));
+                }
+            }
+        }
+        mean
+    }
 }
 
 fn check(channel: &'static str, values: &[f64], time: &[f64]) -> Result<(), MotionError> {
@@ -150,6 +168,11 @@ pub struct Columns {
     pub columns: Vec<Vec<f64>>,
     /// Force of whatever has no amplitude.
     pub rest: Vec<f64>,
+}
+
+/// Mean sign of a velocity that goes linearly from `from` to `to`.
+fn mean_sign(from: f64, to: f64) -> f64 {
+    if from * to < 0.0 { (from + to) / (from.abs() + to.abs()) } else { sign(from + to) }
 }
 
 /// Splits [`force_along`] into columns.
@@ -238,8 +261,8 @@ impl<'a> Walk<'a> {
                 |(force, level): (&f64, &f64)| if *level > 0.0 { force / level } else { 0.0 };
             self.used = self.friction.iter().zip(level).map(used).collect();
         } else {
-            self.friction = level.iter().zip(&self.direction).map(|(l, d)| l * d).collect();
-            self.used.clone_from(&self.direction);
+            self.used = self.motion.sliding();
+            self.friction = level.iter().zip(&self.used).map(|(l, used)| l * used).collect();
         }
     }
 

@@ -375,14 +375,19 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// Whether no other view of the error contradicts: what really acts on the plant helps
-    /// in every view.
+    /// in every view, unless something else that is missing spoils that view.
     fn confirmed(&self, fit: &Fit) -> bool {
         let before = self.ladder.views();
         let after = self.family.views(&fit.model, &self.split);
+        let old = self.split.rms(&self.fit.residual);
+        let new = self.split.rms(&fit.residual);
+        // A view may grow by as much as the residual itself falls.
+        let allowed = |old: f64, new: f64| (old / new).max(CONTRADICTION);
+        let fit = allowed(old.fit, new.fit);
+        let validation = allowed(old.validation, new.validation);
         after.iter().all(|(name, error)| {
             before.get(name).is_none_or(|old| {
-                error.validation <= CONTRADICTION * old.validation
-                    || error.fit <= CONTRADICTION * old.fit
+                error.validation <= validation * old.validation || error.fit <= fit * old.fit
             })
         })
     }

@@ -2,11 +2,10 @@
 //!
 //! `cargo run --release -p benches --bin discovery -- --seeds 30 --levels clear,moderate`
 
-use std::collections::BTreeMap;
-
-use benches::discovery::cell::{self, Answer, Level, Outcome};
+use benches::discovery::cell::{self, Answer, Outcome};
+use benches::discovery::hidden::Case;
 use benches::discovery::motion::Excitation;
-use benches::discovery::table::{ALL, Hidden};
+use benches::discovery::size::Level;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -32,88 +31,72 @@ struct Args {
     /// A motion that tells little
     #[arg(long)]
     poor: bool,
-    /// Print every run that was not right
+    /// Write every run that was not right to the standard error
     #[arg(long)]
     verbose: bool,
-}
-
-struct Row {
-    name: String,
-    kinds: Vec<Hidden>,
-    answers: Vec<&'static str>,
-}
-
-fn rows(args: &Args) -> Vec<Row> {
-    let row = |(kind, name, answers): &(Hidden, &'static str, &'static [&'static str])| Row {
-        name: (*name).to_owned(),
-        kinds: vec![*kind],
-        answers: answers.to_vec(),
-    };
-    let mut all: Vec<Row> = ALL.iter().map(row).collect();
-    if args.pairs {
-        let listed: Vec<Row> = all.into_iter().filter(|row| !row.answers.is_empty()).collect();
-        all = listed
-            .iter()
-            .enumerate()
-            .flat_map(|(i, a)| listed[i + 1..].iter().map(move |b| (a, b)))
-            .filter(|(a, b)| a.answers != b.answers)
-            .map(|(a, b)| Row {
-                name: format!("{} + {}", a.name, b.name),
-                kinds: [a.kinds.clone(), b.kinds.clone()].concat(),
-                answers: [a.answers.clone(), b.answers.clone()].concat(),
-            })
-            .collect();
-    }
-    all.retain(|row| args.only.as_ref().is_none_or(|only| row.name.contains(only.as_str())));
-    all
 }
 
 fn main() {
     let args = Args::parse();
     let excitation = if args.poor { Excitation::Poor } else { Excitation::Good };
-    let rows = rows(&args);
+    let mut cases = if args.pairs { Case::pairs() } else { Case::singles() };
+    cases.retain(|case| args.only.as_ref().is_none_or(|only| case.name.contains(only.as_str())));
     let levels: Vec<Level> = args.levels.iter().filter_map(|name| Level::parse(name)).collect();
-    let bar = ProgressBar::new(rows.len() as u64 * levels.len() as u64 * args.seeds).with_style(
+    let bar = ProgressBar::new(cases.len() as u64 * levels.len() as u64 * args.seeds).with_style(
         ProgressStyle::with_template("{wide_bar} {pos}/{len} {eta} {msg}").expect("valid"),
     );
     println!(
-        "| hidden | level | first | in a set | silent | unexplained | missed | wrong | with extra effects | error / true structure | s |"
+        "| hidden | level | runs | first | in a set | silent | unexplained | missed | wrong | \
+         extra effects | error / true structure | size within 10 % | s |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
-    for row in &rows {
-        for &level in &levels {
-            bar.set_message(format!("{} {level:?}", row.name));
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    let mut sums: Vec<(Level, Vec<Outcome>)> = levels.iter().map(|l| (*l, Vec::new())).collect();
+    for case in &cases {
+        for (level, all) in &mut sums {
+            bar.set_message(format!("{} {level:?}", case.name));
             let outcomes: Vec<Outcome> = (args.first..args.first + args.seeds)
                 .into_par_iter()
                 .filter_map(|seed| {
-                    let outcome = cell::run(&row.kinds, &row.answers, level, excitation, seed);
+                    let outcome = cell::run(case, *level, excitation, seed);
                     bar.inc(1);
-                    let wrong = outcome.as_ref().filter(|o| {
-                        !matches!(o.answer, Answer::First | Answer::InSet | Answer::Silent)
-                    });
-                    if let (true, Some(outcome)) = (args.verbose, wrong) {
-                        bar.suspend(|| {
-                            eprintln!(
-                                "{} seed {seed}: {:?}, {}",
-                                row.name, outcome.answer, outcome.said
-                            );
-                        });
+                    if let (true, Some(outcome)) = (args.verbose, &outcome) {
+                        bar.suspend(|| tell(case, *level, seed, outcome));
                     }
                     outcome
                 })
                 .collect();
-            print_row(row, level, &outcomes);
+            println!("| {} | {level:?} {}", case.name, cells(&outcomes));
+            if !case.answers.is_empty() {
+                all.extend(outcomes);
+            }
         }
     }
     bar.finish_and_clear();
+    for (level, all) in &sums {
+        println!("| **all listed** | {level:?} {}", cells(all));
+    }
 }
 
-fn print_row(row: &Row, level: Level, outcomes: &[Outcome]) {
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for outcome in outcomes {
-        *counts.entry(format!("{:?}", outcome.answer)).or_default() += 1;
+fn tell(case: &Case, level: Level, seed: u64, outcome: &Outcome) {
+    let fine = matches!(outcome.answer, Answer::First | Answer::Silent) && outcome.extra == 0;
+    if !fine {
+        let Case { name, .. } = case;
+        eprintln!("{name} {level:?} seed {seed}: {:?}, {}", outcome.answer, outcome.said);
     }
-    let count = |name: &str| counts.get(name).copied().unwrap_or(0);
+}
+
+/// The cells of a row after hidden effect and level.
+fn cells(outcomes: &[Outcome]) -> String {
+    let count = |answer: Answer| outcomes.iter().filter(|o| o.answer == answer).count();
+    let answers = [
+        Answer::First,
+        Answer::InSet,
+        Answer::Silent,
+        Answer::Unexplained,
+        Answer::Missed,
+        Answer::Wrong,
+    ]
+    .map(|answer| count(answer).to_string());
     let mut ratios: Vec<f64> = outcomes.iter().filter_map(|o| o.error_ratio).collect();
     ratios.sort_unstable_by(f64::total_cmp);
     let at = |part: f64| ratios.get(((ratios.len() as f64 - 1.0) * part) as usize).copied();
@@ -121,16 +104,11 @@ fn print_row(row: &Row, level: Level, outcomes: &[Outcome]) {
         (Some(median), Some(high)) => format!("{median:.3} (95 %: {high:.3})"),
         _ => "-".to_owned(),
     };
+    let sizes: Vec<f64> = outcomes.iter().filter_map(|o| o.size_error).collect();
+    let near = sizes.iter().filter(|error| **error <= 0.1).count();
+    let size = if sizes.is_empty() { "-".to_owned() } else { format!("{near} of {}", sizes.len()) };
     let extra = outcomes.iter().filter(|outcome| outcome.extra > 0).count();
     let time = outcomes.iter().map(|o| o.wall_s).sum::<f64>() / outcomes.len().max(1) as f64;
-    println!(
-        "| {} | {level:?} | {} | {} | {} | {} | {} | {} | {extra} | {ratio} | {time:.2} |",
-        row.name,
-        count("First"),
-        count("InSet"),
-        count("Silent"),
-        count("Unexplained"),
-        count("Missed"),
-        count("Wrong"),
-    );
+    let (runs, answers) = (outcomes.len(), answers.join(" | "));
+    format!("| {runs} | {answers} | {extra} | {ratio} | {size} | {time:.2} |")
 }

@@ -1,57 +1,26 @@
-//! One cell of the matrix: many seeds of one hidden effect at one level.
+//! One cell of the matrix: a hidden effect, a level, a seed, and what the discovery says of it.
 
 use friction_ident::family::{FrictionFamily, Options};
 use missing_physics::discover::terms;
 use missing_physics::report::Verdict;
 use missing_physics::{Discovery, ModelFamily, Settings, discover, search};
 
+use super::hidden::{Case, Hidden};
 use super::motion::Excitation;
-use super::table::{Hidden, Table};
-
-/// How large the hidden effect is against the noise of a force estimate: the force that the base
-/// model cannot imitate, root mean square of the 5 % of instants where it is largest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Level {
-    /// 10 to 30 times.
-    Clear,
-    /// 3 to 10 times.
-    Moderate,
-    /// 1.2 to 2 times.
-    Faint,
-}
-
-impl Level {
-    /// By name.
-    pub fn parse(name: &str) -> Option<Self> {
-        match name {
-            "clear" => Some(Self::Clear),
-            "moderate" => Some(Self::Moderate),
-            "faint" => Some(Self::Faint),
-            _ => None,
-        }
-    }
-
-    /// A ratio within the level; `draw` from 0 to 1.
-    pub fn ratio(self, draw: f64) -> f64 {
-        let (low, high) = match self {
-            Self::Clear => (10.0f64, 30.0f64),
-            Self::Moderate => (3.0, 10.0),
-            Self::Faint => (1.2, 2.0),
-        };
-        low * (high / low).powf(draw)
-    }
-}
+use super::size::{Level, sized};
+use super::table::Table;
 
 /// What a discovery said of a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Answer {
-    /// The hidden effect was added first.
+    /// The hidden effect was added first; of several, all were added.
     First,
     /// Another one was, but the hidden effect stands in an ambiguous set of at most three.
     InSet,
-    /// The right verdict without a name: nothing missing where nothing is, or unexplained.
+    /// The right verdict without a name: nothing missing where nothing is, or unexplained on the right
+    /// coordinate.
     Silent,
-    /// Unexplained structure, where a listed effect was hidden.
+    /// Unexplained structure, where a listed effect was hidden, or on another coordinate.
     Unexplained,
     /// Nothing found, although something was hidden.
     Missed,
@@ -61,84 +30,63 @@ pub enum Answer {
 
 /// Base model of every run.
 const BASE: [&str; 3] = ["coulomb", "viscous", "offset"];
+/// Largest p-value of a coordinate that counts as named.
+const NAMED: f64 = 0.005;
 
 /// One run.
 pub struct Outcome {
     /// What was said.
     pub answer: Answer,
-    /// First effect added, or the verdict.
+    /// Effects added, or the verdict.
     pub said: String,
     /// Effects added besides the hidden ones and those that the report calls indistinguishable.
     pub extra: usize,
     /// Held-out error over that of the true structure, where the answer is right.
     pub error_ratio: Option<f64>,
+    /// Largest relative error of the size of what is hidden, where it was found in the law it has.
+    pub size_error: Option<f64>,
     /// Time taken, s.
     pub wall_s: f64,
 }
 
-/// Root mean square of the largest 5 % of the residual that the base model leaves.
-fn top(table: &Table, excitation: Excitation) -> Option<f64> {
-    let family = FrictionFamily::new(&table.record(excitation).ok()?, &Options::default()).ok()?;
-    let base = terms(&family, &BASE.map(str::to_owned)).ok()?;
-    let weights = vec![1.0; family.target().len()];
-    let mut squares: Vec<f64> = search::identify(&family, &base, &weights, 1)
-        .fit
-        .residual
-        .iter()
-        .map(|residual| residual * residual)
-        .collect();
-    squares.sort_unstable_by(|a, b| b.total_cmp(a));
-    let count = squares.len().div_ceil(20);
-    Some((squares[..count].iter().sum::<f64>() / count as f64).sqrt())
-}
-
-/// Size at which `kind` reaches `ratio` times the noise, by a few secant steps in the logarithm.
-pub fn sized(kind: Hidden, seed: u64, excitation: Excitation, ratio: f64) -> Option<f64> {
-    let noise = top(&Table::draw(seed, &[]), excitation)?;
-    let mut size: f64 = match kind {
-        Hidden::ActuatorLag => 2e-3,
-        Hidden::Presliding | Hidden::Dahl => 3e-5,
-        _ => 2.0,
-    };
-    for _ in 0..3 {
-        let seen = top(&Table::draw(seed, &[(kind, size)]), excitation)?;
-        // The noise adds to the square.
-        let force = (seen * seen - noise * noise).max(0.01 * noise * noise).sqrt();
-        size *= (ratio * noise / force).clamp(0.2, 5.0);
-        size = match kind {
-            Hidden::ActuatorLag => size.min(8e-3),
-            // Beyond this the contact is the machine; below it the encoder sees nothing.
-            Hidden::Presliding | Hidden::Dahl => size.clamp(3e-6, 1.5e-4),
-            // A hump far above the Coulomb level is stick-slip from beginning to end.
-            Hidden::Stribeck | Hidden::GaussianStribeck => size.min(8.0),
-            _ => size.min(60.0),
-        };
-    }
-    Some(size)
-}
-
-/// Hides `kinds` in the table of `seed` and asks; `names` are the right answers.
-pub fn run(
-    kinds: &[Hidden],
-    names: &[&str],
-    level: Level,
-    excitation: Excitation,
-    seed: u64,
-) -> Option<Outcome> {
-    let draw = (seed as f64 * 0.618_033_988_749_894_9).fract();
+/// The table of `seed` with what `case` hides, at `level`; nothing where the motion cannot show that much.
+pub fn table(case: &Case, level: Level, excitation: Excitation, seed: u64) -> Option<Table> {
+    let base = base(case);
     let mut hidden = Vec::new();
-    for kind in kinds.iter().filter(|kind| **kind != Hidden::Nothing) {
-        hidden.push((*kind, sized(*kind, seed, excitation, level.ratio(draw))?));
+    for kind in case.kinds.iter().filter(|kind| **kind != Hidden::Nothing) {
+        hidden.push((*kind, sized(*kind, seed, excitation, level, &base)?));
     }
-    let recording = Table::draw(seed, &hidden).record(excitation).ok()?;
-    let family = FrictionFamily::new(&recording, &Options::default()).ok()?;
-    let settings = Settings { base: BASE.map(str::to_owned).to_vec(), seed, ..Settings::default() };
-    let found = discover(&family, &settings, &mut ()).ok()?;
-    let answer = judge(&found, kinds, names);
-    let said = found.added.first().cloned().unwrap_or_else(|| format!("{:?}", found.verdict));
-    let error_ratio = (answer == Answer::First).then(|| ratio(&family, &found, names)).flatten();
-    let extra = extra(&found, names);
-    Some(Outcome { answer, said, extra, error_ratio, wall_s: found.wall_s })
+    Some(Table::draw(seed, &hidden))
+}
+
+fn base(case: &Case) -> Vec<String> {
+    BASE.iter().chain(&case.beside).map(|name| (*name).to_owned()).collect()
+}
+
+/// What is asked of a discovery of `case`.
+pub fn settings(case: &Case, seed: u64) -> Settings<'static> {
+    Settings { base: base(case), seed, ..Settings::default() }
+}
+
+/// Hides `case` in the table of `seed` and asks.
+pub fn run(case: &Case, level: Level, excitation: Excitation, seed: u64) -> Option<Outcome> {
+    let table = table(case, level, excitation, seed)?;
+    let family = FrictionFamily::new(&table.record(excitation).ok()?, &Options::default()).ok()?;
+    let found = discover(&family, &settings(case, seed), &mut ()).ok()?;
+    let answer = judge(&found, case);
+    let right = answer == Answer::First;
+    Some(Outcome {
+        answer,
+        said: if found.added.is_empty() {
+            format!("{:?}", found.verdict)
+        } else {
+            found.added.join(" + ")
+        },
+        extra: extra(&found, &case.answers),
+        error_ratio: right.then(|| ratio(&family, &found, case)).flatten(),
+        size_error: right.then(|| size_error(&found, &table)).flatten(),
+        wall_s: found.wall_s,
+    })
 }
 
 /// The effect's name without its form.
@@ -156,34 +104,56 @@ fn extra(found: &Discovery, names: &[&str]) -> usize {
     found.added.iter().filter(|added| !names.contains(&stem(added)) && !excused(added)).count()
 }
 
-fn judge(found: &Discovery, kinds: &[Hidden], names: &[&str]) -> Answer {
-    let listed = |effect: &String| names.contains(&stem(effect));
-    let in_set =
-        found.ambiguous.iter().any(|set| set.effects.len() <= 3 && set.effects.iter().any(listed));
-    let complete = names.iter().all(|name| found.added.iter().any(|added| stem(added) == *name));
-    match (names.is_empty(), found.added.first()) {
-        (false, Some(first)) if names.len() == 1 && listed(first) => Answer::First,
-        (false, Some(_)) if names.len() > 1 && complete => Answer::First,
-        (false, Some(_)) if in_set => Answer::InSet,
-        (false, None) if found.verdict == Verdict::Unexplained => Answer::Unexplained,
-        (false, None) => Answer::Missed,
-        (true, None) => {
-            let nothing = kinds == [Hidden::Nothing];
-            let right = if nothing { Verdict::NothingMissing } else { Verdict::Unexplained };
-            if found.verdict == right { Answer::Silent } else { Answer::Missed }
+fn judge(found: &Discovery, case: &Case) -> Answer {
+    let names = &case.answers;
+    let was_added = |name: &&str| found.added.iter().any(|added| stem(added) == *name);
+    let in_set = |name: &&str| {
+        found.ambiguous.iter().any(|set| {
+            set.effects.len() <= 3 && set.effects.iter().any(|effect| stem(effect) == *name)
+        })
+    };
+    let listed = !names.is_empty();
+    match found.added.first() {
+        Some(first) if names.len() == 1 && names.contains(&stem(first)) => Answer::First,
+        Some(_) if names.len() > 1 && names.iter().all(was_added) => Answer::First,
+        Some(_) if listed && names.iter().all(|name| was_added(name) || in_set(name)) => {
+            Answer::InSet
         }
-        (_, Some(_)) => Answer::Wrong,
+        Some(_) => Answer::Wrong,
+        None if case.kinds == [Hidden::Nothing] => match found.verdict {
+            Verdict::NothingMissing => Answer::Silent,
+            _ => Answer::Unexplained,
+        },
+        None if found.verdict != Verdict::Unexplained => Answer::Missed,
+        None if names_coordinate(found, &case.coordinates) => Answer::Silent,
+        None => Answer::Unexplained,
     }
 }
 
+/// Whether the first coordinate on which the residual depends beyond doubt is one of these.
+fn names_coordinate(found: &Discovery, coordinates: &[&str]) -> bool {
+    let place = found.where_it_fails.iter().find(|place| place.p_value <= NAMED);
+    place.is_some_and(|place| coordinates.contains(&place.coordinate.as_str()))
+}
+
 /// Held-out error of the discovered model over that of the true structure.
-fn ratio(family: &FrictionFamily, found: &Discovery, names: &[&str]) -> Option<f64> {
-    let all: Vec<String> = BASE.iter().chain(names).map(|name| (*name).to_owned()).collect();
-    let full = terms(family, &all).ok()?;
+fn ratio(family: &FrictionFamily, found: &Discovery, case: &Case) -> Option<f64> {
+    let truth = case.answers.iter().map(|name| (*name).to_owned());
+    let full = terms(family, &base(case).into_iter().chain(truth).collect::<Vec<_>>()).ok()?;
     let split = missing_physics::split::Split::new(family.target().len(), family.blocks());
     let weights: Vec<f64> =
         split.fit(family.target().len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
     let truth = search::identify(family, &full, &weights, 1).fit;
     let error = found.ladder.last()?.error.get("force_rms_N")?.validation;
     Some(error / split.rms(&truth.residual).validation)
+}
+
+fn size_error(found: &Discovery, table: &Table) -> Option<f64> {
+    let parameters = &found.ladder.last()?.parameters;
+    let error = |(keys, truth): &(&[&str], f64)| {
+        let squares: Option<Vec<f64>> =
+            keys.iter().map(|key| parameters.get(*key).map(|p| p.value * p.value)).collect();
+        Some((squares?.iter().sum::<f64>().sqrt() / truth - 1.0).abs())
+    };
+    table.truth().iter().filter_map(error).reduce(f64::max)
 }

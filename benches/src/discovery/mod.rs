@@ -2,5 +2,7 @@
 //! matrix, and what counts as a hit.
 
 pub mod cell;
+pub mod hidden;
 pub mod motion;
+pub mod size;
 pub mod table;
