@@ -6,9 +6,11 @@ use std::time::{Duration, Instant};
 use crate::family::{Fitted, ModelFamily};
 use crate::fit::{self, Fit};
 use crate::ladder::Ladder;
+use crate::pairs::{self, Pair};
 use crate::report::Discovery;
 use crate::screen::{self, Screened, Screening};
 use crate::split::Split;
+use crate::tried::{self, Tried, as_good, square};
 use crate::{diagnosis, noise, search, verdict, where_it_fails};
 
 /// What is asked of a discovery.
@@ -62,6 +64,11 @@ pub enum Event<'a> {
         rung: usize,
         /// Number of candidates.
         candidates: usize,
+    },
+    /// No single candidate helps: pairs of them are being screened.
+    ScreeningPairs {
+        /// Number of pairs.
+        pairs: usize,
     },
     /// A candidate is being re-identified together with the whole model.
     Trying {
@@ -204,7 +211,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let fit = found.fit;
         let motion = family.motion();
         let mut ladder = Ladder::new(family, split.clone(), fitted.clone());
-        ladder.push(None, &fit, None);
+        ladder.push(&[], &fit, None);
         Self { family, settings, observer, started, split, fitted, motion, excluded, fit, ladder }
     }
 
@@ -218,9 +225,15 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             if enough || self.stopped() || self.at_floor() {
                 break;
             }
-            let Some(chosen) = self.best_addition(&last_screening) else { break };
+            // Where a plain structure along time explains more, no effect of the library is at work, but
+            // something that happens at its own time.
+            let single = self.best_addition(&last_screening).filter(|best| !self.in_time(best));
+            let chosen = single
+                .or_else(|| self.best_pair(&last_screening).filter(|best| !self.in_time(best)));
+            let Some(chosen) = chosen else { break };
+            let newest = chosen.terms.len();
             self.add(chosen);
-            self.drop_idle();
+            self.drop_idle(newest);
         }
         self.observer.event(&Event::Finishing);
         self.report(&base, &last_screening)
@@ -239,7 +252,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                     && !self.excluded.contains(&term)
             })
             .collect();
-        let rung = self.ladder.added().len() + 1;
+        let rung = self.ladder.height();
         self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
         let weights = weights(self.family.doubt(), &self.fit.residual);
         let screening = self.screening(&candidates, &weights);
@@ -269,11 +282,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// The candidate that, re-identified with the whole model, leaves the smallest error, of those that
     /// lower the held-out error.
-    /// None where a plain structure along time explains more than any candidate: then no effect of
-    /// the library is at work, but something that happens at its own time.
     fn best_addition(&mut self, screened: &[Screened]) -> Option<Tried> {
-        let before = self.split.rms(&self.fit.residual).validation;
-        let enough = before * (1.0 - self.settings.least_gain).sqrt();
         let likely = screened
             .iter()
             .filter(|c| c.p_value <= self.settings.alpha && c.gain >= self.settings.least_gain);
@@ -290,30 +299,49 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             tried.push(self.tried(candidate.term, &candidate.values, candidate.p_value));
         }
         let tried = self.with_forms(tried);
-        let helps = |tried: &Tried| {
-            self.split.rms(&tried.fit.residual).validation < enough && self.confirmed(&tried.fit)
-        };
-        let mut tried: Vec<Tried> = tried.into_iter().filter(helps).collect();
-        tried.sort_by(|a, b| a.square.total_cmp(&b.square));
+        let mut tried = self.helpful(tried, self.settings.least_gain);
         let before = square(&self.fit);
-        let chosen = Self::simplest(&tried, before)?;
-        if self.in_time(1.0 - tried[chosen].square / before) {
-            return None;
-        }
+        let chosen = tried::simplest(&tried, before)?;
         let best = tried.swap_remove(chosen);
         let rivals =
             tried.iter().filter(|rival| as_good(rival, &best, before) && !self.at_bound(rival));
-        self.ladder.rivals(best.term, rivals.map(|rival| rival.term).collect());
+        self.ladder.rivals(best.terms[0], rivals.map(|rival| rival.terms[0]).collect());
         Some(best)
     }
 
-    /// Of the best candidate and those that are as good the one with the fewest parameters.
-    fn simplest(tried: &[Tried], before: f64) -> Option<usize> {
-        let best = tried.first()?;
-        let parameters = |k: &usize| tried[*k].fit.model.values.len();
-        (0..tried.len())
-            .filter(|&k| k == 0 || as_good(&tried[k], best, before))
-            .min_by_key(parameters)
+    /// Two candidates that help together where no single one does.
+    fn best_pair(&mut self, screened: &[Screened]) -> Option<Tried> {
+        if self.stopped() {
+            return None;
+        }
+        let candidates: Vec<usize> = screened.iter().map(|candidate| candidate.term).collect();
+        let count = candidates.len() * candidates.len().saturating_sub(1) / 2;
+        self.observer.event(&Event::ScreeningPairs { pairs: count });
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let screening = self.screening(&candidates, &weights);
+        let pairs = pairs::screen(self.family, &self.fit, &screening);
+        let likely =
+            |pair: &&Pair| pair.p_value <= self.settings.alpha && pair.gain_all >= LEAST_PAIR;
+        let tried = pairs.iter().filter(likely).take(MOST_PAIRS).map(|pair| {
+            let terms = [0, 1].map(|k| (pair.terms[k], pair.shapes[k].as_slice()));
+            let start = search::joined(self.family, &self.fit, &terms, &self.fitted);
+            let fit = fit::refine(self.family, start, &self.fitted);
+            Tried::new(&pair.terms, fit, pair.p_value)
+        });
+        let tried = tried.collect();
+        self.helpful(tried, LEAST_PAIR).into_iter().next()
+    }
+
+    /// Those that lower the held-out squared error by a share of `least` and that no other view
+    /// contradicts, the smallest error first.
+    fn helpful(&self, mut tried: Vec<Tried>, least: f64) -> Vec<Tried> {
+        let before = self.split.rms(&self.fit.residual).validation;
+        let enough = before * (1.0 - least).sqrt();
+        tried.retain(|tried| {
+            self.split.rms(&tried.fit.residual).validation < enough && self.confirmed(&tried.fit)
+        });
+        tried.sort_by(|a, b| a.square.total_cmp(&b.square));
+        tried
     }
 
     /// A term re-identified with the whole model, its shapes searched around `values`.
@@ -321,7 +349,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let start =
             search::shaped(self.family, &self.fit, term, values, &self.fitted, self.settings.seed);
         let fit = fit::refine(self.family, start, &self.fitted);
-        Tried { term, square: square(&fit), fit, p_value }
+        Tried::new(&[term], fit, p_value)
     }
 
     /// Whether a parameter of the tried term ended at a limit of its search: what the term says beyond
@@ -329,7 +357,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn at_bound(&self, tried: &Tried) -> bool {
         let model = &tried.fit.model;
         let values = &model.values[model.range(self.family, model.terms.len() - 1)];
-        let parameters = &self.family.terms()[tried.term].parameters;
+        let parameters = &self.family.terms()[tried.terms[0]].parameters;
         parameters.iter().zip(values).any(|(parameter, value)| {
             let near = |limit: f64| (value - limit).abs() <= 1e-3 * limit.abs().max(1e-12);
             near(parameter.lower) || near(parameter.upper)
@@ -351,7 +379,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let weights = weights(self.family.doubt(), &self.fit.residual);
         let screening = self.screening(&[], &weights);
         (0..self.family.terms().len())
-            .filter(|&form| self.family.form_of(form) == Some(main.term))
+            .filter(|&form| self.family.form_of(form) == Some(main.terms[0]))
             .filter_map(|form| {
                 let values = screen::best_values(self.family, &self.fit, &screening, form)?;
                 Some(self.tried(form, &values, main.p_value))
@@ -361,8 +389,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .unwrap_or(main)
     }
 
-    /// Whether a step or a sine in time explains more of the residual than this share.
-    fn in_time(&self, share: f64) -> bool {
+    /// Whether a step or a sine in time explains more of the residual than what has been tried.
+    fn in_time(&self, tried: &Tried) -> bool {
+        let share = 1.0 - tried.square / square(&self.fit);
         let places = self.along_time(&self.fit.residual);
         places.iter().any(|place| place.p_value <= IN_TIME && place.share > share)
     }
@@ -399,18 +428,18 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn add(&mut self, tried: Tried) {
         let before = self.ladder.relative();
         self.fit = tried.fit;
-        self.ladder.push(Some(tried.term), &self.fit, Some(tried.p_value));
+        self.ladder.push(&tried.terms, &self.fit, Some(tried.p_value));
         self.observer.event(&Event::Added {
-            effect: &self.family.terms()[tried.term].name,
+            effect: &self.ladder.joined(&tried.terms),
             before,
             after: self.ladder.relative(),
         });
     }
 
-    /// Takes out effects, added earlier, without which the held-out error is as small.
-    fn drop_idle(&mut self) {
+    /// Takes out effects, added before the `newest`, without which the held-out error is as small.
+    fn drop_idle(&mut self, newest: usize) {
         let added = self.ladder.added();
-        for &term in &added[..added.len().saturating_sub(1)] {
+        for &term in &added[..added.len().saturating_sub(newest)] {
             let with = self.split.rms(&self.fit.residual).validation;
             let without =
                 fit::refine(self.family, self.fit.model.without(self.family, term), &self.fitted);
@@ -454,11 +483,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
 /// Candidates that are re-identified per rung.
 const MOST_TRIED: usize = 4;
-/// A rival's squared error is larger by at most this share.
-const RIVAL: f64 = 0.05;
-
-/// The same in standard errors of the difference.
-const STANDARD_ERRORS: f64 = 1.0;
+/// Pairs that are re-identified where no single candidate helps.
+const MOST_PAIRS: usize = 4;
+/// Smallest share of the held-out squared error that a pair must remove: it has twice the freedom.
+const LEAST_PAIR: f64 = 0.05;
 /// Another form of an effect is taken where it leaves at most this share of the main form's squared
 /// error.
 const BETTER_FORM: f64 = 0.8;
@@ -469,46 +497,6 @@ const AT_FLOOR: f64 = 1.05;
 const HOPEFUL: f64 = 0.4;
 /// Largest p-value of a structure along time that is taken for real.
 const IN_TIME: f64 = 0.005;
-/// Pieces of time for the standard error of a mean.
-const PIECES: usize = 15;
-
-/// A candidate re-identified with the whole model.
-struct Tried {
-    term: usize,
-    fit: Fit,
-    /// Mean squared residual on all data.
-    square: f64,
-    p_value: f64,
-}
-
-/// Mean squared residual on all data.
-fn square(fit: &Fit) -> f64 {
-    fit.residual.iter().map(|value| value * value).sum::<f64>() / fit.residual.len() as f64
-}
-
-/// Whether the data cannot tell a rival from the best: the rival removes half as much at least,
-/// and its squared error is larger by less than a few per cent or by less than the differences
-/// between pieces of time make likely. All data count: what a handful of
-/// parameters gains by being fitted is small against what a third of the data leaves to chance.
-fn as_good(rival: &Tried, best: &Tried, before: f64) -> bool {
-    let (removed, more) = (before - best.square, rival.square - best.square);
-    let pairs = rival.fit.residual.iter().zip(&best.fit.residual);
-    let differences: Vec<f64> = pairs.map(|(a, b)| a * a - b * b).collect();
-    let by_chance = STANDARD_ERRORS * error_of_mean(&differences);
-    more < 0.5 * removed && (more < RIVAL * best.square || more < by_chance)
-}
-
-/// Standard error of the mean of autocorrelated values, from the means of contiguous pieces.
-fn error_of_mean(values: &[f64]) -> f64 {
-    let size = values.len().div_ceil(PIECES).max(1);
-    let means: Vec<f64> =
-        values.chunks(size).map(|piece| piece.iter().sum::<f64>() / piece.len() as f64).collect();
-    let count = means.len() as f64;
-    let mean = means.iter().sum::<f64>() / count;
-    let square: f64 = means.iter().map(|piece| (piece - mean).powi(2)).sum();
-    (square / (count * (count - 1.0).max(1.0))).sqrt()
-}
-
 /// Another view contradicts an effect where its error grows by this factor on held-out data and on
 /// fitted data as well: one of them alone is a matter of a few windows.
 const CONTRADICTION: f64 = 1.05;

@@ -35,11 +35,18 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         }
     }
 
-    pub(crate) fn push(&mut self, added: Option<usize>, fit: &Fit, p_value: Option<f64>) {
+    pub(crate) fn push(&mut self, added: &[usize], fit: &Fit, p_value: Option<f64>) {
         self.added.extend(added);
-        let name = added.map(|term| self.family.terms()[term].name.clone());
+        let name = (!added.is_empty()).then(|| self.joined(added));
         let rung = self.rung(name, fit, p_value);
         self.rungs.push(rung);
+    }
+
+    /// Names of terms that were added together.
+    pub(crate) fn joined(&self, terms: &[usize]) -> String {
+        let names: Vec<&str> =
+            terms.iter().map(|&term| self.family.terms()[term].name.as_str()).collect();
+        names.join(" + ")
     }
 
     /// Replaces the last rung by one without `term`.
@@ -63,6 +70,11 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
 
     pub(crate) fn rivals(&mut self, term: usize, rivals: Vec<usize>) {
         self.rivals.push((term, rivals));
+    }
+
+    /// Number of rungs.
+    pub(crate) fn height(&self) -> usize {
+        self.rungs.len()
     }
 
     /// Indices of the terms added, in order.

@@ -57,13 +57,13 @@ pub struct Screening<'a> {
 }
 
 /// One term with one shape: its columns, weighted and with the model's own freedom projected out.
-struct Trial {
+pub(crate) struct Trial {
     /// Place of the term among the candidates.
-    candidate: usize,
-    shape: Vec<f64>,
-    columns: Vec<Vec<f64>>,
-    gram: Vec<Vec<f64>>,
-    positive: Vec<bool>,
+    pub(crate) candidate: usize,
+    pub(crate) shape: Vec<f64>,
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) gram: Vec<Vec<f64>>,
+    pub(crate) positive: Vec<bool>,
     /// True where the columns have been made orthonormal: signs are free, and the fall of the error
     /// is the sum of the squared moments.
     orthonormal: bool,
@@ -100,12 +100,7 @@ pub fn screen<F: ModelFamily + ?Sized>(
     let weigh = |column: &[f64]| weighed(column, screening.weights);
     let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
     let trials = trials(family, fit, screening, &own);
-    let residual = weigh(&fit.residual);
-    let orders =
-        placebo::rearrangements(residual.len(), PLACEBOS, screening.motion, screening.seed);
-    // The measured residual first, then the placebos.
-    let mut residuals = vec![residual.clone()];
-    residuals.extend(orders.iter().map(|order| order.iter().map(|&k| residual[k]).collect()));
+    let residuals = residuals(fit, screening);
     let falls = falls(&trials, &residuals);
     let shares = shares(&residuals, &own, &trials, &falls, screening.candidates.len());
     let evidence = Evidence::new(&shares[0], &shares[1..]);
@@ -155,7 +150,16 @@ pub fn best_values<F: ModelFamily + ?Sized>(
     Some(assemble(about, &best.shape, amplitude))
 }
 
-fn trials<F: ModelFamily + ?Sized>(
+/// The weighted residual first, then its placebos.
+pub(crate) fn residuals(fit: &Fit, screening: &Screening<'_>) -> Vec<Vec<f64>> {
+    let residual = weighed(&fit.residual, screening.weights);
+    let orders =
+        placebo::rearrangements(residual.len(), PLACEBOS, screening.motion, screening.seed);
+    let placebos = orders.iter().map(|order| order.iter().map(|&k| residual[k]).collect());
+    std::iter::once(residual.clone()).chain(placebos).collect()
+}
+
+pub(crate) fn trials<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
     screening: &Screening<'_>,
@@ -203,7 +207,7 @@ fn positive<F: ModelFamily + ?Sized>(family: &F, term: usize) -> Vec<bool> {
 
 /// Fall of each residual's square by each trial: `falls[trial][residual]`. Matrix products, as there
 /// are some thousand columns and two hundred residuals.
-fn falls(trials: &[Trial], residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub(crate) fn falls(trials: &[Trial], residuals: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let points = residuals[0].len();
     let right = DMatrix::from_fn(points, residuals.len(), |i, k| residuals[k][i]);
     let chunks: Vec<Vec<Vec<f64>>> = trials

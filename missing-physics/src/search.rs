@@ -124,6 +124,23 @@ pub fn shaped<F: ModelFamily + ?Sized>(
     fit.model.with(term, &assemble(about, &shape, amplitude))
 }
 
+/// The model of `fit` with terms added at given shapes; all amplitudes are those of least squares.
+pub fn joined<F: ModelFamily + ?Sized>(
+    family: &F,
+    fit: &Fit,
+    terms: &[(usize, &[f64])],
+    weights: &[f64],
+) -> Fitted {
+    let mut start = fit.model.clone();
+    for (term, shape) in terms {
+        let about = &family.terms()[*term];
+        let sizes: Vec<f64> = amplitudes(about).iter().map(|parameter| parameter.start).collect();
+        start = start.with(*term, &assemble(about, shape, &sizes));
+    }
+    let parameters: Vec<Parameter> = start.parameters(family).map(|(_, p)| p.clone()).collect();
+    projected(family, &start, &parameters, weights).0
+}
+
 fn pick(parameters: &[Parameter], values: &[f64], role: Role) -> Vec<f64> {
     parameters.iter().zip(values).filter(|(p, _)| p.role == role).map(|(_, v)| *v).collect()
 }

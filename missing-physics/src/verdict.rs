@@ -13,11 +13,14 @@ use crate::screen::Screened;
 use crate::shapes::amplitudes;
 use crate::where_it_fails;
 
-/// A residual that depends on a coordinate with at most this p-value and at least this share of its
-/// square is structure.
-const STRUCTURE: (f64, f64) = (0.005, 0.10);
-/// Structure is called unexplained where the error exceeds the noise floor by this factor.
-const ABOVE_FLOOR: f64 = 1.5;
+/// A residual that depends on a coordinate with at most this p-value may be structure.
+const STRUCTURE: f64 = 0.005;
+/// It is, where its share of the squared error, times the share of that which is not noise, is at least
+/// this. Along time the floor does not count: what changes with time is part of it.
+const SHARE: f64 = 0.08;
+/// Effects are only named with confidence where they remove at least this share of what is not noise, or
+/// leave no structure.
+const MOST: f64 = 0.5;
 
 /// All that the verdict rests on.
 pub struct Evidence<'a> {
@@ -51,20 +54,23 @@ pub fn report<F: ModelFamily + ?Sized>(
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
 
     let left = split.rms(&evidence.last.residual).validation;
+    let excess = |left: f64| (left * left - floor * floor).max(0.0);
     let structure = evidence.where_last.iter().find(|place| {
-        let strong = place.p_value <= STRUCTURE.0 && place.share >= STRUCTURE.1;
-        // The floor compares equal states: what changes with time is part of it.
         let in_time = family
             .coordinates()
             .iter()
             .any(|c| c.name == place.coordinate && where_it_fails::only_grows(c));
-        strong && (in_time || left > ABOVE_FLOOR * floor)
+        let above = if in_time { 1.0 } else { excess(left) / (left * left) };
+        place.p_value <= STRUCTURE && place.share * above >= SHARE
     });
-    let verdict = match (added.is_empty(), ambiguous.is_empty(), structure) {
-        (false, false, _) => Verdict::Ambiguous,
-        (false, true, _) => Verdict::EffectsFound,
-        (true, _, Some(_)) => Verdict::Unexplained,
-        (true, _, None) => Verdict::NothingMissing,
+    let before = split.rms(&evidence.base.residual).validation;
+    let little = excess(left) > (1.0 - MOST) * excess(before);
+    let verdict = match (added.is_empty(), structure) {
+        (true, None) => Verdict::NothingMissing,
+        (true, Some(_)) => Verdict::Unexplained,
+        (false, Some(_)) if little => Verdict::Unexplained,
+        (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
+        (false, _) => Verdict::Ambiguous,
     };
     let relative = |rung: usize| {
         rungs[rung].error.get(&ladder::relative_key(family)).map_or(0.0, |e| 100.0 * e.validation)
@@ -76,9 +82,17 @@ pub fn report<F: ModelFamily + ?Sized>(
             relative(0),
             quantity.name
         ),
-        Verdict::Unexplained => format!(
+        Verdict::Unexplained if added.is_empty() => format!(
             "The model leaves {:.2} % of the {}, and no effect of the library explains it.",
             relative(0),
+            quantity.name
+        ),
+        Verdict::Unexplained => format!(
+            "Something else is missing: {} would lower the held-out error from {:.2} % to only {:.2} % of \
+             the {}, and no effect of the library explains the rest.",
+            added.join(", "),
+            relative(0),
+            relative(rungs.len() - 1),
             quantity.name
         ),
         Verdict::EffectsFound | Verdict::Ambiguous => format!(

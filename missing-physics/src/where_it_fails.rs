@@ -11,6 +11,10 @@ use crate::report::{RegimeShare, Where};
 
 /// Bins along a coordinate, each with the same number of points.
 const BINS: usize = 20;
+/// Bins of the same width, for what happens at one place: a dent in the way.
+const FINE: usize = 100;
+/// A bin of fewer points takes in the next one.
+const FEW: usize = 5;
 /// Number of rearranged residuals.
 const PLACEBOS: usize = 199;
 
@@ -27,8 +31,8 @@ pub struct View<'a> {
 }
 
 /// For every coordinate: the share of the squared error that a function of this coordinate alone
-/// would remove (a step for each of 20 bins, adjusted for their number), the chance of as much by
-/// accident, and where along the coordinate it is worst. Largest share first.
+/// would remove (a step for each of 20 bins of equally many points or of 100 of equal width, whichever is
+/// more after adjustment for their number), the chance of as much by accident, and where along the coordinate it is worst. Largest share first.
 pub fn coordinates<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where> {
     let points = view.residual.len();
     let shifts = placebo::rearrangements(points, PLACEBOS, view.motion, view.seed);
@@ -56,10 +60,12 @@ pub fn only_grows(coordinate: &Coordinate) -> bool {
 
 /// Dependence on a coordinate of the motion.
 fn along(coordinate: &Coordinate, view: &View<'_>, orders: &[Vec<usize>], unit: &str) -> Where {
-    let bins = Bins::new(&coordinate.values);
-    let (share, p_value) = tested(coordinate, view, orders, |seen| bins.explained(seen));
+    let (coarse, fine) = (Bins::new(&coordinate.values), Bins::fine(&coordinate.values));
+    let (share, p_value) =
+        tested(coordinate, view, orders, |seen| coarse.explained(seen).max(fine.explained(seen)));
     let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
-    let note = bins.worst(coordinate, &plain, unit);
+    let local = fine.explained(&plain) > coarse.explained(&plain);
+    let note = if local { fine } else { coarse }.worst(coordinate, &plain, unit);
     Where { coordinate: coordinate.name.clone(), share, p_value, note }
 }
 
@@ -172,8 +178,31 @@ impl Bins {
         Self { of, count }
     }
 
+    /// Bins of the same width; those with few points are joined with the one before.
+    fn fine(values: &[f64]) -> Self {
+        let (low, high) =
+            values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+        let scale = FINE as f64 / (high - low).max(f64::MIN_POSITIVE);
+        let raw = |value: &f64| (((value - low) * scale) as usize).min(FINE - 1);
+        let mut points = [0usize; FINE];
+        values.iter().for_each(|value| points[raw(value)] += 1);
+        let (mut joined, mut bin, mut inside) = ([0; FINE], 0, 0);
+        for (k, points) in points.iter().enumerate() {
+            if inside >= FEW {
+                bin += 1;
+                inside = 0;
+            }
+            joined[k] = bin;
+            inside += points;
+        }
+        let of: Vec<usize> = values.iter().map(|value| joined[raw(value)]).collect();
+        let mut count = vec![0.0; bin + 1];
+        of.iter().for_each(|bin| count[*bin] += 1.0);
+        Self { of, count }
+    }
+
     pub(crate) fn means(&self, values: &[f64]) -> Vec<f64> {
-        let mut sums = [0.0; BINS];
+        let mut sums = vec![0.0; self.count.len()];
         values.iter().zip(&self.of).for_each(|(value, bin)| sums[*bin] += value);
         sums.iter().zip(&self.count).map(|(sum, count)| sum / count.max(1.0)).collect()
     }
@@ -201,7 +230,7 @@ impl Bins {
     fn worst(&self, coordinate: &Coordinate, values: &[f64], unit: &str) -> String {
         let means = self.means(values);
         let at = self.means(&coordinate.values);
-        let worst = (0..BINS)
+        let worst = (0..self.count.len())
             .filter(|&bin| self.count[bin] > 0.0)
             .max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()));
         let Some(bin) = worst else { return String::new() };

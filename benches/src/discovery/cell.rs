@@ -77,11 +77,7 @@ pub fn run(case: &Case, level: Level, excitation: Excitation, seed: u64) -> Opti
     let right = answer == Answer::First;
     Some(Outcome {
         answer,
-        said: if found.added.is_empty() {
-            format!("{:?}", found.verdict)
-        } else {
-            found.added.join(" + ")
-        },
+        said: format!("{:?} {}", found.verdict, found.added.join(" + ")),
         extra: extra(&found, &case.answers),
         error_ratio: right.then(|| ratio(&family, &found, case)).flatten(),
         size_error: right.then(|| size_error(&found, &table)).flatten(),
@@ -113,7 +109,8 @@ fn judge(found: &Discovery, case: &Case) -> Answer {
         })
     };
     let listed = !names.is_empty();
-    match found.added.first() {
+    let unexplained = found.verdict == Verdict::Unexplained;
+    match found.added.first().filter(|_| !unexplained) {
         Some(first) if names.len() == 1 && names.contains(&stem(first)) => Answer::First,
         Some(_) if names.len() > 1 && names.iter().all(was_added) => Answer::First,
         Some(_) if listed && names.iter().all(|name| was_added(name) || in_set(name)) => {
@@ -124,7 +121,7 @@ fn judge(found: &Discovery, case: &Case) -> Answer {
             Verdict::NothingMissing => Answer::Silent,
             _ => Answer::Unexplained,
         },
-        None if found.verdict != Verdict::Unexplained => Answer::Missed,
+        None if !unexplained => Answer::Missed,
         None if names_coordinate(found, &case.coordinates) => Answer::Silent,
         None => Answer::Unexplained,
     }

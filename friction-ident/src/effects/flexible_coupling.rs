@@ -14,7 +14,7 @@ static ABOUT: About = About {
     title: "load behind a flexible coupling",
     equation: "m_L x_L'' = k (x - x_L) + d (x' - x_L') acts back on the mass, k = m_L (2 pi f)^2, d = 2 zeta m_L 2 pi f",
     parameters: &[
-        Parameter::shape("m_L", "mass behind the coupling", Quantity::Mass, (1e-3, 1e3), 10.0),
+        Parameter::level("m_L", "mass behind the coupling", Quantity::Mass, 1e3, 10.0),
         Parameter::shape(
             "f",
             "its frequency with the drive blocked",
@@ -40,7 +40,8 @@ impl Effect for FlexibleCoupling {
 }
 
 /// Trapezoidal rule for the load over a step in which the mass moves by `moved`. The load's mean
-/// velocity `u` follows from `2 m_L (u - v_L) / r = -k (e + (r u - moved) / 2) - d (u - moved / r)`.
+/// velocity `u` follows from `2 (u - v_L) / r = -w^2 (e + (r u - moved) / 2) - 2 zeta w (u - moved / r)`:
+/// the force is in proportion to `m_L`, which may be nothing.
 struct Swing {
     /// Mean force on the mass, and its slope against `moved`.
     force: f64,
@@ -51,13 +52,13 @@ struct Swing {
 
 fn swing(p: Parameters<'_>, i: usize, r: f64, moved: f64, stretch: f64, velocity: f64) -> Swing {
     let (load, w, zeta) = (p.get(0)[i], TAU * p.get(1)[i], p.get(2)[i]);
-    let (stiffness, damping) = (load * w * w, 2.0 * zeta * load * w);
+    let (stiffness, damping) = (w * w, 2.0 * zeta * w);
     if r <= 0.0 {
-        return Swing { force: -stiffness * stretch, slope: 0.0, mean: velocity };
+        return Swing { force: -load * stiffness * stretch, slope: 0.0, mean: velocity };
     }
-    let inertia = 2.0 * load / r + 0.5 * stiffness * r + damping;
+    let inertia = 2.0 / r + 0.5 * stiffness * r + damping;
     let coupling = 0.5 * stiffness + damping / r;
-    let mean = (2.0 * load * velocity / r - stiffness * stretch + coupling * moved) / inertia;
+    let mean = (2.0 * velocity / r - stiffness * stretch + coupling * moved) / inertia;
     // What accelerates the load is missing at the mass.
     let force = 2.0 * load * (mean - velocity) / r;
     Swing { force, slope: 2.0 * load * coupling / (r * inertia), mean }

@@ -23,6 +23,7 @@ pub struct Limits {
     stroke: f64,
     rest_speed: f64,
     position_noise: f64,
+    bandwidth: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -52,6 +53,7 @@ impl Limits {
             stroke: (stroke.1 - stroke.0).max(f64::MIN_POSITIVE),
             rest_speed: prepared.rest_speed,
             position_noise: prepared.position_noise,
+            bandwidth: prepared.bandwidth,
         }
     }
 
@@ -139,6 +141,8 @@ impl Limits {
                 0.05 * self.force.rms / (0.1 * self.stroke),
                 self.force.rms / self.position_noise.max(1e-6 * self.stroke),
             ),
+            // A resonance above the bandwidth is only a little more mass.
+            Quantity::Frequency => (low, self.bandwidth),
             // What settles within two samples cannot be told from what is there at once.
             Quantity::Time => (2.0 * self.interval, f64::INFINITY),
             _ => (low, high),
@@ -167,6 +171,10 @@ fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
         || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
 }
 
+/// Trial frequencies of a coupling, and its trial damping ratios.
+const RESONANCES: usize = 40;
+const DAMPING: [f64; 3] = [0.03, 0.1, 0.4];
+
 /// Trial periods of a ripple, the shortest first: evenly in spatial frequency, a little less than a
 /// line width apart, up to the frequency that passes the comparison's bandwidth in slow motion.
 pub fn periods(prepared: &Prepared, stroke: (f64, f64)) -> Vec<f64> {
@@ -182,4 +190,13 @@ pub fn periods(prepared: &Prepared, stroke: (f64, f64)) -> Vec<f64> {
         .rev()
         .map(|k| 1.0 / (lowest + (highest - lowest).max(0.0) * k as f64 / count as f64))
         .collect()
+}
+
+/// Trial frequencies and damping ratios of a coupling: a resonance is as narrow as its damping, so that
+/// the frequencies lie closer than other shapes.
+pub fn resonances(term: &Term) -> Vec<Vec<f64>> {
+    let frequency = term.parameters.iter().find(|parameter| parameter.name == "f");
+    let line = frequency.map(|f| missing_physics::shapes::spread(f, RESONANCES));
+    let both = |f: f64| DAMPING.iter().map(move |zeta| vec![f, *zeta]);
+    line.unwrap_or_default().into_iter().flat_map(both).collect()
 }

@@ -307,6 +307,9 @@ impl ModelFamily for FrictionFamily {
                 .map(|period| vec![period])
                 .collect();
         }
+        if self.terms[term].name == "flexible-coupling" {
+            return limits::resonances(&self.terms[term]);
+        }
         missing_physics::shapes::grid(&self.terms[term])
     }
 
