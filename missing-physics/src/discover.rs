@@ -319,9 +319,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.observer.event(&Event::ScreeningPairs { pairs: count });
         let weights = weights(self.family.doubt(), &self.fit.residual);
         let screening = self.screening(&candidates, &weights);
-        let pairs = pairs::screen(self.family, &self.fit, &screening);
-        let likely =
-            |pair: &&Pair| pair.p_value <= self.settings.alpha && pair.gain_all >= LEAST_PAIR;
+        let pairs = pairs::screen(self.family, &self.fit, &screening, LEAST_PAIR);
+        let likely = |pair: &&Pair| pair.p_value <= self.settings.alpha;
         let tried = pairs.iter().filter(likely).take(MOST_PAIRS).map(|pair| {
             let terms = [0, 1].map(|k| (pair.terms[k], pair.shapes[k].as_slice()));
             let start = search::joined(self.family, &self.fit, &terms, &self.fitted);

@@ -6,6 +6,7 @@ use std::ops::Range;
 use aep_core::Scale;
 use rayon::prelude::*;
 
+use crate::generic::Generic;
 use crate::report::{Plot, SplitError};
 use crate::spectrum::FullRate;
 use crate::split::Split;
@@ -230,6 +231,12 @@ pub trait ModelFamily: Sync {
             "repeat the experiment with more varied motion to separate {}.",
             terms.join(" and ")
         )
+    }
+
+    /// A term, as text that a user can add to a model, that describes structure of this shape along a
+    /// coordinate without explaining it; nothing where the family has none.
+    fn generic_term(&self, _coordinate: &Coordinate, _shape: &Generic) -> Option<String> {
+        None
     }
 
     /// Regimes of the experiment, exclusive and complete.

@@ -14,6 +14,7 @@ pub mod discover;
 pub mod evidence;
 pub mod family;
 pub mod fit;
+pub mod generic;
 pub mod in_time;
 pub mod ladder;
 pub mod metrics;

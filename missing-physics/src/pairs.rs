@@ -30,11 +30,13 @@ pub struct Pair {
     pub p_value: f64,
 }
 
-/// Screens all pairs of the candidates against the residual of `fit`; best first.
+/// Screens all pairs of the candidates against the residual of `fit`; best first. Where none removes a share
+/// of `least`, none is returned and no placebo is looked at.
 pub fn screen<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
     screening: &Screening<'_>,
+    least: f64,
 ) -> Vec<Pair> {
     let own =
         Basis::of(&fit.jacobian.iter().map(|c| weighed(c, screening.weights)).collect::<Vec<_>>());
@@ -42,16 +44,18 @@ pub fn screen<F: ModelFamily + ?Sized>(
     let residuals = screen::residuals(fit, screening);
     let falls = screen::falls(&trials, &residuals);
     let joint = Joint::new(&trials, screening.candidates.len());
-    let best: Vec<Vec<Option<Best>>> = residuals
-        .par_iter()
-        .enumerate()
-        .map(|(k, residual)| {
-            let alone = joint.alone(&falls, k);
-            let mut rest = residual.clone();
-            own.project_out(&mut rest);
-            joint.best(&rest, &alone)
-        })
-        .collect();
+    let on = |(k, residual): (usize, &Vec<f64>)| {
+        let mut rest = residual.clone();
+        own.project_out(&mut rest);
+        joint.best(&rest, &joint.alone(&falls, k))
+    };
+    let measured = on((0, &residuals[0]));
+    if measured.iter().flatten().all(|best| best.share < least) {
+        return Vec::new();
+    }
+    let mut best: Vec<Vec<Option<Best>>> =
+        residuals[1..].par_iter().enumerate().map(|(k, residual)| on((k + 1, residual))).collect();
+    best.insert(0, measured);
     let share = |best: &Option<Best>| best.map_or(0.0, |best| best.share);
     let rows: Vec<Vec<f64>> = best.iter().map(|row| row.iter().map(share).collect()).collect();
     let evidence = Evidence::new(&rows[0], &rows[1..]);

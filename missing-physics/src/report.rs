@@ -169,6 +169,10 @@ pub struct Discovery {
     pub regimes_base: Vec<RegimeShare>,
     /// Effects that this data cannot tell apart.
     pub ambiguous: Vec<Ambiguity>,
+    /// Where structure remains that no effect explains: a term, as text to save and to add, that
+    /// describes it.
+    #[serde(default)]
+    pub generic_term: Option<String>,
     /// Size of the error that no model can remove, by quantity.
     pub noise_floor: BTreeMap<String, f64>,
     /// Size of each effect that would have been seen, in words, by effect.

@@ -5,6 +5,7 @@ use std::fmt::Write;
 
 use crate::family::ModelFamily;
 use crate::fit::Fit;
+use crate::generic;
 use crate::ladder::{self, Ladder};
 use crate::noise;
 use crate::quantity::quantity;
@@ -120,6 +121,10 @@ pub fn report<F: ModelFamily + ?Sized>(
             choice.experiment
         );
     }
+    let generic_term = structure.and_then(|place| {
+        let coordinate = family.coordinates().iter().find(|c| c.name == place.coordinate)?;
+        family.generic_term(coordinate, &generic::shape(coordinate, &evidence.last.residual))
+    });
     let mut notes = Vec::new();
     if evidence.interrupted {
         notes.push("Stopped before the end: further effects were not looked for.".to_owned());
@@ -135,6 +140,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         regimes: where_it_fails::regimes(family, &evidence.last.residual),
         regimes_base: where_it_fails::regimes(family, &evidence.base.residual),
         ambiguous,
+        generic_term,
         noise_floor,
         detection_limits: limits(family, evidence),
         seed: 0,

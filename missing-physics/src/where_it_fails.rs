@@ -179,7 +179,7 @@ impl Bins {
     }
 
     /// Bins of the same width; those with few points are joined with the one before.
-    fn fine(values: &[f64]) -> Self {
+    pub(crate) fn fine(values: &[f64]) -> Self {
         let (low, high) =
             values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
         let scale = FINE as f64 / (high - low).max(f64::MIN_POSITIVE);
@@ -209,7 +209,7 @@ impl Bins {
 
     /// Adjusted share of the sum of squares that lies between bins, the overall mean included: a
     /// residual that is off everywhere by the same amount depends on nothing.
-    fn explained(&self, values: &[f64]) -> f64 {
+    pub(crate) fn explained(&self, values: &[f64]) -> f64 {
         let points = values.len() as f64;
         let mean = values.iter().sum::<f64>() / points;
         let total: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
@@ -227,16 +227,20 @@ impl Bins {
         adjusted.max(0.0)
     }
 
-    fn worst(&self, coordinate: &Coordinate, values: &[f64], unit: &str) -> String {
-        let means = self.means(values);
-        let at = self.means(&coordinate.values);
-        let worst = (0..self.count.len())
+    /// Mean coordinate and mean value of the bin with the largest mean value, by size.
+    pub(crate) fn peak(&self, coordinate: &[f64], values: &[f64]) -> Option<(f64, f64)> {
+        let (at, means) = (self.means(coordinate), self.means(values));
+        (0..self.count.len())
             .filter(|&bin| self.count[bin] > 0.0)
-            .max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()));
-        let Some(bin) = worst else { return String::new() };
+            .max_by(|&a, &b| means[a].abs().total_cmp(&means[b].abs()))
+            .map(|bin| (at[bin], means[bin]))
+    }
+
+    fn worst(&self, coordinate: &Coordinate, values: &[f64], unit: &str) -> String {
+        let Some((at, mean)) = self.peak(&coordinate.values, values) else { return String::new() };
         let opposes = if coordinate.parity.is_some() { " against the motion" } else { "" };
-        let sign = if means[bin] > 0.0 { "+" } else { "" };
-        let (size, place) = (quantity(means[bin], unit), quantity(at[bin], &coordinate.unit));
+        let sign = if mean > 0.0 { "+" } else { "" };
+        let (size, place) = (quantity(mean, unit), quantity(at, &coordinate.unit));
         format!("largest mean error {sign}{size}{opposes} near {place}")
     }
 }

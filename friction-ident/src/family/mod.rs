@@ -7,6 +7,7 @@ pub mod compare;
 mod coordinates;
 mod filter;
 mod full_rate;
+mod generic;
 mod limits;
 mod plots;
 mod preparation;
@@ -17,6 +18,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use missing_physics::basis::{dot, gram, solve};
+use missing_physics::generic::Generic;
 use missing_physics::report::{Plot, SplitError};
 use missing_physics::spectrum::FullRate;
 use missing_physics::split::Split;
@@ -412,6 +414,10 @@ impl ModelFamily for FrictionFamily {
 
     fn experiment(&self, terms: &[String]) -> String {
         words::experiment(terms)
+    }
+
+    fn generic_term(&self, coordinate: &Coordinate, shape: &Generic) -> Option<String> {
+        generic::effect(coordinate, shape, &self.quantity().unit)
     }
 
     fn plots(&self, base: &Fitted, last: &Fitted) -> Vec<Plot> {
