@@ -2,9 +2,11 @@
 //! autocorrelated noise.
 
 use missing_physics::report::Verdict;
+use missing_physics::screen::Screening;
+use missing_physics::split::Split;
 use missing_physics::{
     Coordinate, Discovery, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Settings, Term,
-    discover,
+    discover, pairs, search,
 };
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -225,4 +227,40 @@ fn an_unknown_effect_is_refused_with_the_names_that_there_are() {
     let settings = Settings { base: vec!["slop".into()], ..Settings::default() };
     let error = discover(&family, &settings, &mut ()).unwrap_err().to_string();
     assert!(error.contains("'slop'") && error.contains("slope, square"), "{error}");
+}
+
+/// The best pair of candidates beside the base model, with its p-value.
+fn best_pair(family: &Family, seed: u64) -> Option<([usize; 2], f64)> {
+    let split = Split::new(POINTS, Vec::new());
+    let weights = vec![1.0; POINTS];
+    let fit = search::identify(family, &[0, 1], &weights, seed).fit;
+    let candidates: Vec<usize> = (2..family.terms.len()).collect();
+    let motion = family.motion();
+    let screening = Screening {
+        candidates: &candidates,
+        weights: &weights,
+        split: &split,
+        motion: &motion,
+        seed,
+    };
+    let pairs = pairs::screen(family, &fit, &screening, 0.0);
+    assert_eq!(pairs.len(), candidates.len() * (candidates.len() - 1) / 2);
+    pairs.first().map(|pair| (pair.terms, pair.p_value))
+}
+
+#[test]
+fn of_all_pairs_the_hidden_one_is_best_and_chance_makes_none() {
+    let (square, cosine) = (2, 5);
+    let mut alarms = 0;
+    for seed in 1..=20 {
+        let hidden = Family::new(seed, 0.2, |_, x| 0.4 * x * x + 0.3 * (9.0 * x).cos());
+        let (mut terms, p_value) = best_pair(&hidden, seed).unwrap();
+        terms.sort_unstable();
+        assert_eq!(terms, [square, cosine], "seed {seed}");
+        assert!(p_value <= 0.01, "seed {seed}: {p_value}");
+        let (_, p_value) = best_pair(&Family::new(seed, 0.2, |_, _| 0.0), seed).unwrap();
+        alarms += usize::from(p_value <= 0.05);
+    }
+    // 20 draws at 5 %: more than 4 happen once in 400.
+    assert!(alarms <= 4, "{alarms} of 20");
 }
