@@ -17,6 +17,7 @@ mod compensator;
 mod contact;
 mod course;
 mod delay;
+pub mod export;
 mod measures;
 mod memory;
 pub mod paper;
