@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use aep_data::unit;
 use friction_ident::control::{Course, Servo, Settings, from_positions, paper};
-use friction_ident::{Axis, Model, Reference};
+use friction_ident::{Axis, Model, Quantity, Reference};
 
 use crate::failure::Failure;
 
@@ -29,7 +29,7 @@ pub struct ReferenceArgs {
 #[derive(clap::Args, Clone, Debug)]
 #[command(next_help_heading = "Loop")]
 pub struct LoopArgs {
-    /// Sampling time, s [default: the paper's 0.005]
+    /// Sampling time, s
     #[arg(long, value_name = "S", default_value_t = friction_ident::paper::SAMPLE_TIME, value_parser = crate::commands::positive)]
     sample_time: f64,
     /// Proportional gain, N/m or N m/rad; by default from mass and sampling time
@@ -42,18 +42,19 @@ pub struct LoopArgs {
     /// Feed forward the mass times the reference's acceleration
     #[arg(long)]
     feedforward: bool,
-    /// Resolution of the encoder, m or rad; 0 for none
-    #[arg(long, value_name = "STEP", default_value_t = friction_ident::paper::ENCODER, value_parser = crate::commands::not_negative)]
-    encoder: f64,
+    /// Resolution of the encoder, m or rad, 0 for none [default: 1e-6 m or 1e-5 rad]
+    #[arg(long, value_name = "STEP", value_parser = crate::commands::not_negative)]
+    encoder: Option<f64>,
     /// Resolution of the D/A converter, N or N m; 0 for none
     #[arg(long, value_name = "STEP", default_value_t = 0.0, value_parser = crate::commands::not_negative)]
     force_resolution: f64,
     /// Range of the D/A converter: the command is limited to +- this, N or N m
     #[arg(long, value_name = "LIMIT", value_parser = crate::commands::positive)]
     force_limit: Option<f64>,
-    /// Measured speed up to which the compensator takes the axis for stuck, m/s or rad/s
-    #[arg(long, value_name = "V_CR", default_value_t = paper::CRITICAL_VELOCITY, value_parser = crate::commands::positive)]
-    critical_velocity: f64,
+    /// Measured speed up to which the compensator takes the axis for stuck [default: 6e-4 m/s or
+    /// 6e-3 rad/s]
+    #[arg(long, value_name = "V_CR", value_parser = crate::commands::positive)]
+    critical_velocity: Option<f64>,
     /// Leave pre-sliding out of the compensator, as the paper's formula does
     #[arg(long)]
     no_presliding: bool,
@@ -76,16 +77,14 @@ impl LoopArgs {
         (servo.proportional, servo.derivative) =
             (self.kp.unwrap_or(servo.proportional), self.kd.unwrap_or(servo.derivative));
         servo.feedforward = if self.feedforward { model.mass() } else { 0.0 };
-        servo.setup.encoder_resolution = self.encoder;
+        let encoder = friction_ident::paper::ENCODER * model.axis().typical(Quantity::Length);
+        servo.setup.encoder_resolution = self.encoder.unwrap_or(encoder);
         servo.setup.force_resolution = self.force_resolution;
         servo.setup.force_limit = self.force_limit.unwrap_or(f64::INFINITY);
-        Ok((servo, self.settings()))
-    }
-
-    /// The compensator's settings.
-    pub fn settings(&self) -> Settings {
+        let critical = paper::CRITICAL_VELOCITY * model.axis().typical(Quantity::Velocity);
+        let critical = self.critical_velocity.unwrap_or(critical);
         let presliding = !self.no_presliding;
-        Settings { presliding, ..Settings::new(self.sample_time, self.critical_velocity) }
+        Ok((servo, Settings { presliding, ..Settings::new(self.sample_time, critical) }))
     }
 }
 

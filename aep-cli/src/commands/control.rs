@@ -65,8 +65,12 @@ impl From<ControlError> for Failure {
     fn from(error: ControlError) -> Self {
         match error {
             ControlError::Compensator(error) => Self::from_lines(&error.to_string()),
-            other => Self::failed(format!("the loop cannot be simulated: {other}"))
-                .with_hint("lower --kp and --kd, or sample faster with --sample-time"),
+            other => {
+                let text = other.to_string();
+                let first = text.lines().next().unwrap_or_default();
+                Self::failed(format!("the loop cannot be simulated: {first}"))
+                    .with_hint("lower --kp and --kd, or sample faster with --sample-time")
+            }
         }
     }
 }
@@ -92,7 +96,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         Some(percent) => {
             let off = percent / 100.0;
             if off >= 1.0 {
-                return Err(Failure::bad_input("--robustness must be below 100 %"));
+                return Err(Failure::bad_input("--robustness must be below 100 %")
+                    .with_hint("for example --robustness 20"));
             }
             let factors = [1.0 - off, 1.0 + off];
             robustness(

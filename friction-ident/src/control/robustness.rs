@@ -9,7 +9,7 @@ use crate::reference::Reference;
 
 use super::compensator::{Compensator, Settings};
 use super::measures::Measures;
-use super::trial::{ControlError, Servo, run};
+use super::trial::{ControlError, Servo, Trial, run};
 
 /// The compensation with one parameter off.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,9 +29,9 @@ pub struct Deviation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Behaviour {
-    /// The axis runs ahead of its reference: more force than the friction takes.
+    /// More force in the direction of motion than the model as it is gives.
     OverCompensated,
-    /// It lags behind: less force.
+    /// Less force.
     UnderCompensated,
     /// It sticks though the reference moves.
     Sticks,
@@ -54,8 +54,8 @@ impl Behaviour {
     }
 }
 
-/// Counts of the encoder by which a mean lag must exceed that of the model as it is.
-const COUNTS: f64 = 2.0;
+/// Share of the mean force by which a compensation must differ to be called too much or too little.
+const SHARE: f64 = 0.01;
 
 /// All amplitudes together.
 const ALL: &str = "all friction";
@@ -74,14 +74,14 @@ pub fn robustness(
     factors: &[f64],
 ) -> Result<Vec<Deviation>, ControlError> {
     let exact = Compensator::new(model, settings)?;
-    let exact = run(plant, reference, servo, Some(&exact))?.measures;
+    let exact = run(plant, reference, servo, Some(&exact))?;
+    let usual = mean_force(&exact, reference);
     let nominal = Deviation {
         parameter: "none".into(),
         factor: 1.0,
-        behaviour: behaviour(&exact, 0.0, servo.setup.encoder_resolution),
-        measures: exact,
+        behaviour: behaviour(&exact.measures, usual, usual),
+        measures: exact.measures,
     };
-    let lag = nominal.measures.mean_lag;
     let mut cases = Vec::new();
     for parameter in parameters(model, settings)? {
         cases.extend(factors.iter().map(|factor| (parameter.clone(), *factor)));
@@ -91,7 +91,8 @@ pub fn robustness(
         let compensator = Compensator::new(&changed, settings)?;
         let (measures, behaviour) = match run(plant, reference, servo, Some(&compensator)) {
             Ok(trial) => {
-                let found = behaviour(&trial.measures, lag, servo.setup.encoder_resolution);
+                let force = mean_force(&trial, reference);
+                let found = behaviour(&trial.measures, force, usual);
                 (trial.measures, found)
             }
             Err(ControlError::Loop(_)) => (Measures::default(), vec![Behaviour::RunsAway]),
@@ -133,13 +134,19 @@ fn changed(model: &Model, parameter: &str, factor: f64) -> Model {
     changed
 }
 
-fn behaviour(measures: &Measures, usual_lag: f64, resolution: f64) -> Vec<Behaviour> {
+/// Mean compensation in the direction of the reference's motion, N or N m.
+fn mean_force(trial: &Trial, reference: &Reference) -> f64 {
+    let moving = || trial.compensation.iter().zip(&reference.velocity).filter(|(_, v)| **v != 0.0);
+    moving().map(|(force, v)| force * v.signum()).sum::<f64>() / moving().count().max(1) as f64
+}
+
+fn behaviour(measures: &Measures, force: f64, usual: f64) -> Vec<Behaviour> {
     let mut found = Vec::new();
-    let (lag, counts) = (measures.mean_lag - usual_lag, COUNTS * resolution);
-    if lag < -counts {
+    let (more, share) = (force - usual, SHARE * usual.abs());
+    if more > share {
         found.push(Behaviour::OverCompensated);
     }
-    if lag > counts {
+    if more < -share {
         found.push(Behaviour::UnderCompensated);
     }
     match measures.limit_cycle {
