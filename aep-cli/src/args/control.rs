@@ -97,11 +97,11 @@ impl ReferenceArgs {
         let is_file = Path::new(&self.reference).extension().is_some_and(|e| e == "csv")
             || Path::new(&self.reference).exists();
         if is_file {
-            return self.from_file(Path::new(&self.reference), axis, sample_time);
+            return self.read_file(Path::new(&self.reference), axis, sample_time);
         }
         let course = course(&self.reference, axis)?;
         let duration = self.duration.unwrap_or_else(|| course.usual_duration());
-        if !(duration / sample_time < MOST) {
+        if (duration / sample_time).is_nan() || duration / sample_time >= MOST {
             return Err(Failure::bad_input(format!(
                 "{duration:.3e} s at {sample_time} s a sample are too many samples"
             ))
@@ -115,7 +115,7 @@ impl ReferenceArgs {
     }
 
     /// A file's positions, linear between its samples.
-    fn from_file(&self, path: &Path, axis: Axis, step: f64) -> Result<Reference, Failure> {
+    fn read_file(&self, path: &Path, axis: Axis, step: f64) -> Result<Reference, Failure> {
         let found = aep_data::read_reference(path)?;
         if found.rotary.is_some_and(|rotary| rotary != (axis == Axis::Rotary)) {
             return Err(Failure::bad_input(

@@ -1,5 +1,6 @@
 //! `aep export`: a model as a compensator in C, or as JSON with its schema.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
@@ -116,7 +117,8 @@ fn c(args: &Args, folder: &Path) -> Result<String, Failure> {
     })?;
     let mut said = String::new();
     for left in compensator.left_out() {
-        said += &format!("not compensated: {}: {}\n", left.effect, left.why);
+        // Writing to a string cannot fail.
+        let _ = writeln!(said, "not compensated: {}: {}", left.effect, left.why);
     }
     for file in files {
         let path = folder.join(&file.name);

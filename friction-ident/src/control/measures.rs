@@ -173,7 +173,7 @@ fn standstill(run: &Run, reference: &Reference, reversals: &[usize], band: f64) 
         let at = reversals[i];
         // From the middle of the stretch before to the middle of the one after; a lagging axis turns
         // later than its reference.
-        (before + at) / 2..(at + after).div_ceil(2)
+        before.midpoint(at)..at.midpoint(after + 1)
     };
     (0..reversals.len())
         .map(|i| {

@@ -3,7 +3,7 @@
 //!
 //! # How the printed settings are read
 //! Sampling time 5 ms, encoder 1 um and `V_cr` = 0.06 cm/s are printed. Of the gains only
-//! "K_P = 0.1, K_D = 0.1" is printed. Per count and per difference of one sample the two have the ratio
+//! `K_P = 0.1`, `K_D = 0.1` is printed. Per count and per difference of one sample the two have the ratio
 //! `K_D / K_P` = 5 ms, whatever the unit of the force is; it is kept. Read in kgf they are
 //! 9.8e5 N/m and 4.9e3 N s/m: unstable for the table's mass alone (spectral radius 1.023), held barely
 //! stable (0.987) by its viscous friction ([`super::LinearLoop`]). The gain of D/A converter and amplifier

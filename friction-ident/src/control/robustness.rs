@@ -124,11 +124,10 @@ fn changed(model: &Model, parameter: &str, factor: f64) -> Model {
     let mut changed = model.clone();
     for address in model.addresses() {
         let amplitude = model.parameter(&address).is_some_and(|p| p.role == Role::Amplitude);
-        if address == parameter || parameter == ALL && amplitude {
-            if let Ok(value) = model.get(&address) {
-                // A positive factor keeps every value acceptable.
-                let _ = changed.set(&address, value * factor);
-            }
+        let concerned = address == parameter || parameter == ALL && amplitude;
+        if let (true, Ok(value)) = (concerned, model.get(&address)) {
+            // A positive factor keeps every value acceptable.
+            let _ = changed.set(&address, value * factor);
         }
     }
     changed

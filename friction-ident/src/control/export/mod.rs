@@ -6,6 +6,8 @@
 mod laws;
 mod text;
 
+use std::fmt::Write as _;
+
 use crate::axis::{Axis, Quantity};
 use crate::closed_loop::Sample;
 
@@ -98,7 +100,8 @@ fn vectors(compensator: &Compensator, axis: Axis, samples: &[Sample]) -> String 
     for sample in samples {
         let force = compensator.force(sample);
         let (reference, velocity) = (sample.reference, sample.reference_velocity);
-        text += &format!("{reference:e},{velocity:e},{:e},{force:e}\n", sample.position);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{reference:e},{velocity:e},{:e},{force:e}", sample.position);
     }
     text
 }

@@ -54,7 +54,7 @@ fn built_and_run(compiler: &str, files: &[File], name: &str) -> String {
         .args([&format!("{name}.c"), &format!("{name}_test.c"), "-o", "run", "-lm"])
         .output()
         .unwrap();
-    let source = || files.iter().find(|f| f.name.ends_with(".c")).map(|f| f.text.clone());
+    let source = || files.iter().find(|f| f.name == format!("{name}.c")).map(|f| f.text.clone());
     let errors = String::from_utf8_lossy(&built.stderr).into_owned();
     assert!(built.status.success(), "{errors}\n{}", source().unwrap_or_default());
     let program = folder.0.join("run");
@@ -141,7 +141,7 @@ fn memories_of_both_kinds_and_a_changed_vector_are_told_apart() {
         let mut files = exported(&model(memory), Settings::new(2e-3, 5e-4), course, "memory");
         built_and_run(&compiler, &files, "memory");
         // One force off by a billionth must fail: the program compares.
-        let vectors = files.iter_mut().find(|f| f.name.ends_with(".csv")).unwrap();
+        let vectors = files.iter_mut().find(|f| f.name.contains("_vectors")).unwrap();
         let rows: Vec<&str> = vectors.text.lines().collect();
         let (middle, cells) = (rows.len() / 2, rows[rows.len() / 2].split(',').collect::<Vec<_>>());
         let off: f64 = cells[3].parse::<f64>().unwrap() * (1.0 + 1e-9) + 1e-9;

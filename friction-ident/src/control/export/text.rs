@@ -242,8 +242,8 @@ impl<'a> Writer<'a> {
             );
         }
         if let Some(bond) = self.compensator.bond() {
-            let humps = self.laws.iter().filter(|(_, law)| !law.hump.is_empty());
-            let hump = humps.last().map_or("1.0".to_owned(), |(t, law)| filled(t, law.hump));
+            let mut humps = self.laws.iter().filter(|(_, law)| !law.hump.is_empty());
+            let hump = humps.next_back().map_or("1.0".to_owned(), |(t, law)| filled(t, law.hump));
             let _ = write!(
                 text,
                 "/* Takes the state of the motion; w is the velocity that the slide followed. Gives what there is\n\
