@@ -14,7 +14,7 @@ use super::trial::{ControlError, Servo, Trial, run};
 /// The compensation with one parameter off.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Deviation {
-    /// Address of the parameter; `all friction` for all amplitudes together, `none` for the model as
+    /// Address of the parameter; `all forces` for all amplitudes together, `none` for the model as
     /// it is.
     pub parameter: String,
     /// Factor on it.
@@ -58,7 +58,7 @@ impl Behaviour {
 const SHARE: f64 = 0.01;
 
 /// All amplitudes together.
-const ALL: &str = "all friction";
+const ALL: &str = "all forces";
 
 /// The compensator of `model` with every parameter multiplied by each of `factors`, on `plant`; the
 /// first entry is the model as it is.
