@@ -73,14 +73,19 @@ fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve]) -> Drawn {
         .x_desc(axes.x)
         .y_desc(axes.y)
         .light_line_style(TRANSPARENT)
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { format!("{y}") })
+        .x_label_formatter(&|x| tick(*x))
+        .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { tick(*y) })
         .draw()?;
     for (curve, colour) in curves.iter().zip(COLOURS.iter().cycle()) {
         add(&mut chart, curve, *colour)?;
     }
     chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
     Ok(())
+}
+
+/// A place on an axis without the rounding errors of its making.
+fn tick(place: f64) -> String {
+    ((place * 1e9).round() / 1e9).to_string()
 }
 
 fn add(chart: &mut Chart<'_, '_>, curve: &Curve, colour: RGBColor) -> Drawn {
