@@ -234,7 +234,7 @@ fn deviation_table(case: &Case, deviations: &[Deviation]) -> String {
         ("parameter", Align::Left),
         ("off by", Align::Right),
         ("RMS error", Align::Right),
-        ("against exact", Align::Right),
+        ("against as it is", Align::Right),
         ("stick episodes", Align::Right),
         ("what happens", Align::Left),
     ]);
