@@ -47,6 +47,9 @@ impl Observer for Progress {
             Event::Screening { rung, candidates } => {
                 self.say(format!("rung {rung}: {candidates} candidates against placebos"));
             }
+            Event::ScreeningPairs { pairs } => {
+                self.say(format!("no single candidate helps: {pairs} pairs against placebos"));
+            }
             Event::Trying { effect, gain, .. } => {
                 self.say(format!("refitting with {effect} (expected gain {})", percent(*gain)));
             }

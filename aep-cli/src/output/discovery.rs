@@ -38,6 +38,14 @@ pub fn verdict(discovery: &Discovery) -> String {
     for note in &discovery.notes {
         let _ = writeln!(text, " {} {note}", dim("note:"));
     }
+    let unexplained = discovery.verdict == Verdict::Unexplained;
+    if let Some(term) = discovery.generic_term.as_ref().filter(|_| unexplained) {
+        let _ =
+            writeln!(text, "\n An effect file that describes what remains without explaining it:");
+        for line in term.lines() {
+            let _ = writeln!(text, "   {}", dim(line));
+        }
+    }
     text
 }
 

@@ -6,7 +6,7 @@ use crate::html::{self, concat, escape, table};
 
 /// The section of the limits; nothing where there are none.
 pub(super) fn section(discovery: &Discovery) -> String {
-    let body = ambiguous(discovery) + &limits(discovery) + &notes(discovery);
+    let body = ambiguous(discovery) + &generic(discovery) + &limits(discovery) + &notes(discovery);
     if body.is_empty() {
         return String::new();
     }
@@ -24,6 +24,15 @@ fn ambiguous(discovery: &Discovery) -> String {
             escape(&choice.experiment)
         )
     }))
+}
+
+fn generic(discovery: &Discovery) -> String {
+    let Some(term) = &discovery.generic_term else { return String::new() };
+    format!(
+        "<details><summary>An effect file that describes what remains without explaining it</summary>\
+             <pre>{}</pre></details>",
+        escape(term)
+    )
 }
 
 fn limits(discovery: &Discovery) -> String {
