@@ -146,6 +146,7 @@ pub fn comparison(
         regimes: regimes(family, &last.residual),
         regimes_base: regimes(family, &base.residual),
         ambiguous: Vec::new(),
+        generic_term: None,
         noise_floor,
         detection_limits: std::collections::BTreeMap::new(),
         seed,

@@ -9,7 +9,7 @@ use crate::generic;
 use crate::ladder::{self, Ladder};
 use crate::noise;
 use crate::quantity::quantity;
-use crate::report::{Curve, Discovery, Plot, Verdict, Where};
+use crate::report::{Discovery, Verdict, Where};
 use crate::screen::Screened;
 use crate::shapes::amplitudes;
 use crate::where_it_fails;
@@ -149,7 +149,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         diagnosis: None,
         diagnosis_base: None,
         views: Vec::new(),
-        plots: plots(family, evidence),
+        plots: family.plots(&evidence.base.model, &evidence.last.model),
     }
 }
 
@@ -172,27 +172,4 @@ fn limits<F: ModelFamily + ?Sized>(
             Some((term.name.clone(), words))
         })
         .collect()
-}
-
-/// The residual of base and last model along the coordinates on which the base model fails most,
-/// and the family's own curves.
-fn plots<F: ModelFamily + ?Sized>(family: &F, evidence: &Evidence<'_>) -> Vec<Plot> {
-    let quantity = family.quantity();
-    let mut plots = family.plots(&evidence.base.model, &evidence.last.model);
-    for place in evidence.where_base.iter().take(4) {
-        let found = family.coordinates().iter().find(|c| c.name == place.coordinate);
-        let Some(coordinate) = found else { continue };
-        let curve = |label: &str, fit: &Fit| {
-            let (x, y) = where_it_fails::profile(coordinate, &fit.residual);
-            Curve { label: label.to_owned(), x, y }
-        };
-        let opposes = if coordinate.parity.is_some() { ", against the motion" } else { "" };
-        plots.push(Plot {
-            title: format!("Mean residual along {}", coordinate.name),
-            x_label: format!("{} / {}", coordinate.name, coordinate.unit),
-            y_label: format!("{} residual{opposes} / {}", quantity.name, quantity.unit),
-            curves: vec![curve("base model", evidence.base), curve("last model", evidence.last)],
-        });
-    }
-    plots
 }

@@ -136,15 +136,6 @@ pub fn regimes<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> Vec<Reg
     shares
 }
 
-/// The curve of the mean residual over the bins of a coordinate, for plots.
-pub fn profile(coordinate: &Coordinate, residual: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let bins = Bins::new(&coordinate.values);
-    let seen = parity(coordinate, residual, &vec![1.0; residual.len()]);
-    let means = bins.means(&seen);
-    let at = bins.means(&coordinate.values);
-    (at, means)
-}
-
 pub(crate) fn parity(coordinate: &Coordinate, residual: &[f64], weights: &[f64]) -> Vec<f64> {
     let weighted = residual.iter().zip(weights).map(|(r, w)| r * w);
     match &coordinate.parity {
