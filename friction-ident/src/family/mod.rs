@@ -307,16 +307,16 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
-        if self.terms[term].name == "ripple" {
-            return limits::periods(&self.prepared, self.stroke)
-                .into_iter()
-                .map(|period| vec![period])
-                .collect();
-        }
         if self.terms[term].name == "gravity-pendulum" {
             // Most pendulums hang at the zero of their encoder; a coarse grid passes it by.
             return (-ANGLES..=ANGLES)
                 .map(|k| vec![std::f64::consts::PI * f64::from(k) / f64::from(ANGLES)])
+                .collect();
+        }
+        if self.terms[term].name == "ripple" {
+            return limits::periods(&self.prepared, self.stroke)
+                .into_iter()
+                .map(|period| vec![period])
                 .collect();
         }
         missing_physics::shapes::grid(&self.terms[term])
