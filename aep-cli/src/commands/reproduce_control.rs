@@ -75,7 +75,7 @@ fn svg(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
         points: points(position),
         band: Vec::new(),
     };
-    let mut curves = vec![curve("desired", &shown.reference.position)];
+    let mut curves = Vec::new();
     if figure.pd {
         curves.push(curve("PD", &shown.pd.run.position));
     }
@@ -83,7 +83,8 @@ fn svg(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
         curves.push(curve("PD + compensation", &shown.compensated.run.position));
     }
     let axes = Axes { title: figure.title, x: "time, s", y: "position, cm", logarithmic: false };
-    curve_plot::svg(axes, &curves)
+    let desired = curve("desired", &shown.reference.position);
+    curve_plot::svg_against(axes, &curves, &[desired])
 }
 
 /// Tracking errors: what the width of the lines hides in the plot of positions.
