@@ -9,6 +9,7 @@ use aep_core::{
     Scale as SearchScale, Start as SearchStart,
 };
 use missing_physics::{Recording, RecordingError};
+use rayon::prelude::*;
 
 use crate::effects::{Role, Scale};
 use crate::model::{MASS, Model, ModelError};
@@ -17,9 +18,11 @@ use crate::windows::{WindowError, WindowOptions};
 
 mod free_run;
 mod intervals;
+mod refine;
 mod windowed;
 
 pub use intervals::{Interval, intervals};
+pub use refine::Refined;
 
 use free_run::FreeRun;
 use windowed::Windowed;
@@ -187,10 +190,12 @@ impl<'a> Identification<'a> {
     /// Position errors at every sample for each candidate, m or rad.
     fn residuals(&self, candidates: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let full: Vec<Vec<f64>> = candidates.iter().map(|x| self.full(x)).collect();
-        match &self.comparison {
-            Comparison::FreeRun(run) => run.residuals(&full),
-            Comparison::Windows(windows) => windows.residuals(&full),
-        }
+        full.par_chunks(self.batch_size())
+            .flat_map_iter(|full| match &self.comparison {
+                Comparison::FreeRun(run) => run.residuals(full),
+                Comparison::Windows(windows) => windows.residuals(full),
+            })
+            .collect()
     }
 
     /// Mean square of the recorded motion, and of what its encoder cannot resolve.
