@@ -11,6 +11,7 @@ use crate::failure::Failure;
 
 mod bars;
 mod check;
+mod confirmation;
 mod discovery;
 mod residual;
 mod style;
@@ -18,6 +19,7 @@ mod table;
 mod views;
 
 pub use check::data_check;
+pub use confirmation::confirmation;
 pub use discovery::{Columns, ladder, parameters, ranking, regimes, verdict, where_it_fails};
 pub use residual::{lines, tests};
 pub use style::{bold, dim, heading};

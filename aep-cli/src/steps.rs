@@ -84,6 +84,15 @@ pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> 
     Err(other_axis())
 }
 
+/// Refuses recordings of a linear axis next to those of a rotary one.
+pub fn same_axes(family: &FrictionFamily, other: &FrictionFamily) -> Result<(), Failure> {
+    if family.axis() == other.axis() {
+        return Ok(());
+    }
+    let what = "one of the recordings is of a linear axis, the other of a rotary one";
+    Err(Failure::bad_input(what).with_hint("give --validate recordings of the same drive"))
+}
+
 /// The failure of a model and data that do not belong together.
 pub fn other_axis() -> Failure {
     let what = "one of model and data is of a linear axis, the other of a rotary one";

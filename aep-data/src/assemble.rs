@@ -4,6 +4,7 @@ use std::path::Path;
 
 use missing_physics::{Channel, Recording, RecordingError};
 
+use crate::enabled::switched_on;
 use crate::error::{DataError, Problem};
 use crate::layouts::Layout;
 use crate::mapping::Mapping;
@@ -28,6 +29,8 @@ pub struct Loaded {
     pub layout: Option<&'static str>,
     /// Columns that nothing was read from.
     pub unused: Vec<String>,
+    /// Samples left out because the drive was switched off.
+    pub switched_off: usize,
 }
 
 /// Where a quantity came from.
@@ -52,11 +55,11 @@ pub(crate) fn assemble(
     let mapping = layout.map_or_else(|| mapping.clone(), |known| mapping.or(&known.mapping()));
     let picks = picks(path, table, &mapping)?;
     let rotary = is_rotary(&picks).map_err(|problem| DataError::new(path, problem))?;
-    let recording = recording(path, table, &mapping, &picks, rotary)?;
+    let (recording, switched_off) = recording(path, table, &mapping, &picks, rotary)?;
     let origins = picks.iter().map(|pick| origin(pick, rotary)).collect();
     let used = |name: &String| picks.iter().any(|pick| pick.columns().any(|used| used == name));
     let unused = names.iter().filter(|name| !used(name)).cloned().collect();
-    Ok(Loaded { recording, origins, layout: layout.map(|known| known.name), unused })
+    Ok(Loaded { recording, origins, layout: layout.map(|known| known.name), unused, switched_off })
 }
 
 fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>, DataError> {
@@ -102,8 +105,9 @@ fn recording(
     mapping: &Mapping,
     picks: &[Pick],
     rotary: bool,
-) -> Result<Recording, DataError> {
+) -> Result<(Recording, usize), DataError> {
     let mut time = None;
+    let mut enabled = None;
     let mut segment = None;
     let mut channels = Vec::new();
     for pick in picks {
@@ -111,6 +115,7 @@ fn recording(
         match pick.role {
             Role::Time => time = Some(values),
             Role::Segment => segment = Some(whole(&values, pick, table, path)?),
+            Role::Enabled => enabled = Some(values),
             role => {
                 let unit = unit(role, rotary);
                 check_size(&values, unit, pick, table, path)?;
@@ -125,7 +130,19 @@ fn recording(
     let recording = Recording::with_segments(name, time, channels, segment)
         .map_err(|error| located(error, picks, table, path))?;
     check_interval(recording.interval()).map_err(|problem| DataError::new(path, problem))?;
-    Ok(recording.with_hold(mapping.hold.unwrap_or_default()))
+    let recording = recording.with_hold(mapping.hold.unwrap_or_default());
+    let Some(enabled) = enabled.filter(|enabled| enabled.contains(&0.0)) else {
+        return Ok((recording, 0));
+    };
+    let (samples, values) = (recording.len(), enabled.len());
+    if samples != values {
+        let problem = Problem::Length { name: "enabled".to_owned(), values, samples };
+        return Err(DataError::new(path, problem));
+    }
+    let left = switched_on(&recording, &enabled)
+        .map_err(|error| DataError::new(path, Problem::Recording(error)))?;
+    let switched_off = samples - left.len();
+    Ok((left, switched_off))
 }
 
 /// Refuses values so large that no machine has them and that squares of them overflow.

@@ -288,6 +288,16 @@ pub enum Problem {
         /// What it must be.
         must: &'static str,
     },
+    /// A file that does not belong to those before it.
+    #[error("its {what} is {here}, but that of the files before it is {there}")]
+    Differs {
+        /// What differs.
+        what: &'static str,
+        /// In this file.
+        here: String,
+        /// In the files before.
+        there: String,
+    },
     /// Whatever else a recording does not allow.
     #[error("{0}")]
     Recording(#[from] missing_physics::RecordingError),
@@ -392,6 +402,9 @@ impl Problem {
             Self::Toml { .. } => {
                 "an example: hold = \"zero-order\" and force = { column = \"u_V\", gain = 35.15 }"
                     .to_owned()
+            }
+            Self::Differs { .. } => {
+                "files given together must be recordings of one axis, made in one way".to_owned()
             }
             Self::BadNumber { .. } | Self::Recording(_) => return None,
         })

@@ -28,6 +28,7 @@
 
 mod assemble;
 mod csv_table;
+mod enabled;
 mod error;
 mod header;
 mod layouts;
@@ -37,6 +38,7 @@ mod mat_table;
 mod pick;
 mod role;
 mod save;
+mod several;
 mod table;
 pub mod unit;
 mod write;
@@ -49,6 +51,7 @@ pub use layouts::{LAYOUTS, Layout};
 pub use mapping::{Mapping, Source, hold_name, parse_hold};
 pub use role::{ALL as ROLES, Facts, Role};
 pub use save::{SaveError, save};
+pub use several::read_all;
 pub use write::{to_csv, to_csv_rounded, to_toml};
 
 use csv_table::CsvTable;

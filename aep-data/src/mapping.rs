@@ -64,6 +64,8 @@ pub struct Mapping {
     pub segment: Source,
     /// Temperature.
     pub temperature: Source,
+    /// 0 where the drive is switched off: such samples are left out.
+    pub enabled: Source,
     /// Sampling interval in seconds, for files without a time.
     pub interval_s: Option<f64>,
     /// How the input acts between samples: `zero-order` or `sampled`.
@@ -82,6 +84,7 @@ impl Mapping {
             Role::Reference => &self.reference,
             Role::Segment => &self.segment,
             Role::Temperature => &self.temperature,
+            Role::Enabled => &self.enabled,
         }
     }
 
@@ -96,6 +99,7 @@ impl Mapping {
             reference: self.reference.or(&other.reference),
             segment: self.segment.or(&other.segment),
             temperature: self.temperature.or(&other.temperature),
+            enabled: self.enabled.or(&other.enabled),
             interval_s: self.interval_s.or(other.interval_s),
             hold: self.hold.or(other.hold),
         }

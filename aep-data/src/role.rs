@@ -19,6 +19,8 @@ pub enum Role {
     Segment,
     /// Temperature.
     Temperature,
+    /// 0 where the drive is switched off.
+    Enabled,
 }
 
 /// What is known of a role.
@@ -121,6 +123,16 @@ pub const ALL: &[Facts] = &[
         linear: Quantity::Temperature,
         rotary: Quantity::Temperature,
         aliases: &["temperature", "temp"],
+        rotary_aliases: &[],
+    },
+    Facts {
+        role: Role::Enabled,
+        name: "enabled",
+        header: "enabled",
+        rotary_header: "enabled",
+        linear: Quantity::Number,
+        rotary: Quantity::Number,
+        aliases: &["enabled", "torque_enable", "torque_enabled", "drive_enabled"],
         rotary_aliases: &[],
     },
 ];

@@ -242,7 +242,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let rung = self.ladder.added().len() + 1;
         self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
         let weights = weights(self.family.doubt(), &self.fit.residual);
-        screen::screen(self.family, &self.fit, &self.screening(&candidates, &weights))
+        let screening = self.screening(&candidates, &weights);
+        let mut screened = screen::screen(self.family, &self.fit, &screening);
+        // A flexible term gains much by chance: what gains more than chance does stands before it.
+        screened.sort_by_key(|candidate| candidate.p_value > self.settings.alpha);
+        screened
     }
 
     /// Whether what has been added leaves no more than the noise floor: from there on an effect could

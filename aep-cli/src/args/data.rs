@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use aep_data::{Loaded, Mapping, Source, parse_hold, read};
+use aep_data::{Loaded, Mapping, Source, parse_hold, read, read_all};
 use missing_physics::Hold;
 
 use crate::failure::Failure;
@@ -32,6 +32,9 @@ pub struct MappingArgs {
     /// Column of the temperature
     #[arg(long, value_name = "NAME")]
     temperature: Option<String>,
+    /// Column that is 0 where the drive is switched off; such samples are left out
+    #[arg(long, value_name = "NAME")]
+    enabled: Option<String>,
     /// Unit of the time: s, ms, us, ...
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
@@ -85,6 +88,7 @@ impl MappingArgs {
             reference: source(&self.reference, &self.reference_unit, self.reference_gain),
             segment: source(&self.segment, &None, None),
             temperature: source(&self.temperature, &self.temperature_unit, None),
+            enabled: source(&self.enabled, &None, None),
             interval_s: self.interval,
             hold: self.hold,
         }
@@ -94,27 +98,42 @@ impl MappingArgs {
     pub fn read(&self, path: &Path) -> Result<Loaded, Failure> {
         Ok(read(path, &self.mapping())?)
     }
+
+    /// Reads `paths` as the pieces of one recording.
+    pub fn read_all(&self, paths: &[PathBuf]) -> Result<Loaded, Failure> {
+        Ok(read_all(paths, &self.mapping())?)
+    }
 }
 
 /// A measurement that has to be given.
 #[derive(clap::Args, Clone, Debug)]
 pub struct DataArgs {
     /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
-    /// MATLAB v5/v7. Names, units and gains may also stand in DATA.toml beside it.
-    #[arg(value_name = "DATA")]
-    path: PathBuf,
+    /// MATLAB v5/v7. Names, units and gains may also stand in DATA.toml beside it. Several files are
+    /// pieces of one measurement.
+    #[arg(value_name = "DATA", required = true)]
+    paths: Vec<PathBuf>,
     #[command(flatten)]
     mapping: MappingArgs,
 }
 
 impl DataArgs {
-    /// The file.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// The files, as they stand in a command.
+    pub fn words(&self) -> String {
+        words(&self.paths)
     }
 
     /// Reads it.
     pub fn read(&self) -> Result<Loaded, Failure> {
-        self.mapping.read(&self.path)
+        self.mapping.read_all(&self.paths)
     }
+}
+
+/// Files as they stand in a command.
+pub fn words(paths: &[PathBuf]) -> String {
+    let quoted = paths.iter().map(|path| {
+        let text = path.display().to_string();
+        if text.contains(char::is_whitespace) { format!("'{text}'") } else { text }
+    });
+    quoted.collect::<Vec<String>>().join(" ")
 }

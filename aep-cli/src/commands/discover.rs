@@ -1,12 +1,12 @@
 //! `aep discover`: the main job.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use missing_physics::data_check::check;
 use missing_physics::{Discovery, discover};
 
 use crate::app::Global;
-use crate::args::{EffectNames, MappingArgs, OutputArgs, RunArgs};
+use crate::args::{EffectNames, MappingArgs, OutputArgs, RunArgs, words};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
@@ -22,9 +22,9 @@ use crate::steps;
 pub struct Args {
     /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
     /// MATLAB v5/v7; without it, the example that comes with the program. Names, units and gains may also
-    /// stand in DATA.toml beside it
+    /// stand in DATA.toml beside it. Several files are pieces of one measurement
     #[arg(value_name = "DATA")]
-    data: Option<PathBuf>,
+    data: Vec<PathBuf>,
     /// Effects of the model to begin with
     #[arg(long, value_name = "EFFECTS", default_value = "coulomb,viscous,offset")]
     base: EffectNames,
@@ -34,6 +34,9 @@ pub struct Args {
     /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
+    /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them
+    #[arg(long, value_name = "DATA", num_args = 1..)]
+    validate: Vec<PathBuf>,
     #[command(flatten)]
     results: OutputArgs,
     #[command(flatten)]
@@ -48,15 +51,20 @@ Examples:
   aep discover run.csv --html report.html                a report with plots
   aep discover run.csv --base coulomb,viscous --json -   for scripts
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
-  aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found";
+  aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
+  aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let base = args.base.checked()?;
     let settings = args.run.settings(base)?;
-    let loaded = match &args.data {
-        Some(path) => args.mapping.read(path)?,
-        None => crate::example::load()?,
+    let loaded = match args.data.as_slice() {
+        [] => crate::example::load()?,
+        paths => args.mapping.read_all(paths)?,
+    };
+    let others = match args.validate.as_slice() {
+        [] => None,
+        paths => Some(args.mapping.read_all(paths)?),
     };
     let quiet = global.quiet || args.results.own_stdout();
     let data = check(&loaded.recording);
@@ -68,9 +76,20 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let family = steps::family(&loaded.recording, args.bandwidth)?;
     progress.say("fitting the base model");
     let discovery = discover(&family, &settings, &mut progress)?;
+    let mut more = Vec::new();
+    let mut confirmed = String::new();
+    if let Some(others) = &others {
+        progress.say("confirming it on the other recordings");
+        let other = steps::family(&others.recording, args.bandwidth)?.with_stroke_of(&family);
+        steps::same_axes(&family, &other)?;
+        let rungs = missing_physics::confirm::on(&other, &discovery.ladder, &settings)?;
+        confirmed = output::confirmation(&discovery, &rungs, others.recording.name());
+        let name = others.recording.name();
+        more.push(("confirmation", serde_json::json!({ "recording": name, "rungs": rungs })));
+    }
     drop(progress);
     let report =
-        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
+        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, path)?;
@@ -78,15 +97,15 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if quiet {
         return Ok(());
     }
-    let next = args.data.as_deref().map_or_else(crate::example::next, |path| next(args, path));
+    let next = if args.data.is_empty() { crate::example::next() } else { next(args) };
     let files = if files.is_empty() { files } else { format!("\n{files}") };
-    output::print(&(story(&discovery) + &files + &next))
+    output::print(&(story(&discovery) + &confirmed + &files + &next))
 }
 
 fn save_model(
     family: &friction_ident::family::FrictionFamily,
     discovery: &Discovery,
-    path: &Path,
+    path: &std::path::Path,
 ) -> Result<String, Failure> {
     let Some(last) = discovery.ladder.last() else {
         return Ok(String::new());
@@ -134,10 +153,10 @@ fn story(discovery: &Discovery) -> String {
     text + &output::verdict(discovery)
 }
 
-fn next(args: &Args, path: &Path) -> String {
+fn next(args: &Args) -> String {
     if args.results.html.is_some() {
         return String::new();
     }
-    let command = format!("aep discover {} --html report.html", path.display());
+    let command = format!("aep discover {} --html report.html", words(&args.data));
     format!("\n{}\n", output::dim(&format!("All this with plots: {command}")))
 }

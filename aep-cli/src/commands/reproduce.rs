@@ -114,14 +114,14 @@ fn report(rows: &[(&str, Claim)], files: &[PathBuf]) -> String {
         ("about", Align::Left),
         ("the paper prints", Align::Left),
         ("here", Align::Left),
-        ("agrees", Align::Left),
+        ("verdict", Align::Left),
     ]);
     for (figure, claim) in rows {
-        let verdict = if claim.agrees { "yes" } else { "no" };
-        let cells = [figure, claim.about.as_str(), &claim.paper, &claim.ours, verdict];
+        let verdict = claim.verdict.to_string();
+        let cells = [figure, claim.about.as_str(), &claim.paper, &claim.ours, &verdict];
         table.row(cells.map(str::to_owned));
     }
-    let agreeing = rows.iter().filter(|(_, claim)| claim.agrees).count();
+    let agreeing = rows.iter().filter(|(_, claim)| claim.agrees()).count();
     let mut text = heading("The paper's statements and ours") + &table.text();
     let _ = writeln!(text, "\n {agreeing} of {} agree", rows.len());
     for file in files {
@@ -131,10 +131,11 @@ fn report(rows: &[(&str, Claim)], files: &[PathBuf]) -> String {
 }
 
 fn claims_csv(rows: &[(&str, Claim)]) -> String {
-    let mut text = String::from("figure,about,paper,ours,agrees\n");
+    let mut text = String::from("figure,about,paper,ours,verdict,reason\n");
     for (figure, claim) in rows {
         let (about, paper, ours) = (quote(&claim.about), quote(&claim.paper), quote(&claim.ours));
-        let _ = writeln!(text, "{figure},{about},{paper},{ours},{}", claim.agrees);
+        let reason = quote(claim.reason.as_deref().unwrap_or_default());
+        let _ = writeln!(text, "{figure},{about},{paper},{ours},{},{reason}", claim.verdict);
     }
     text
 }

@@ -71,7 +71,7 @@ fn svg(figure: &paper::Figure, lines: &[Trials]) -> Result<String, Failure> {
 }
 
 fn readings_csv(readings: &[Reading]) -> String {
-    let columns = "line,reading,default,mean,median,best,worst,found,trials,paper,ours,agrees\n";
+    let columns = "line,reading,default,mean,median,best,worst,found,trials,paper,ours,verdict\n";
     let mut text = String::from(columns);
     for reading in readings {
         let (summary, claim) = (&reading.summary, &reading.claim);
@@ -88,7 +88,7 @@ fn readings_csv(readings: &[Reading]) -> String {
             summary.trials,
             quote(&claim.paper),
             quote(&claim.ours),
-            claim.agrees,
+            claim.verdict,
         );
     }
     text

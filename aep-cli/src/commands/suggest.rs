@@ -65,7 +65,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let next = match likely {
         Some(best) => format!(
             "Try it: aep extend {} --model {} --add {} -o better.json\n",
-            args.data.path().display(),
+            args.data.words(),
             args.model.display(),
             best.effect
         ),

@@ -17,6 +17,11 @@ pub fn data_check(loaded: &Loaded, check: &DataCheck) -> String {
     // Writing to a string cannot fail.
     let _ = writeln!(text, " {}", overview(loaded, check));
     text.push_str(&channels(loaded, check));
+    if loaded.switched_off > 0 {
+        let (mark, samples) = (dim("·"), loaded.switched_off);
+        let _ =
+            writeln!(text, " {mark} the drive was switched off for {samples} samples: left out");
+    }
     for finding in &check.findings {
         let mark = match finding.severity {
             Severity::Info => dim("·"),

@@ -128,3 +128,35 @@ fn the_published_axis_gives_the_published_error_and_the_known_asymmetry() {
     assert!((error(0) - 0.0408).abs() < 0.0015, "{}", error(0));
     assert!(error(1) < 0.0326, "{}", error(1));
 }
+
+/// Files of the XL330 recorded at one gain, as words of a command.
+fn servo(gain: &str) -> Option<String> {
+    let runs = ["lift_and_drop", "sin_sin", "sin_time_square", "up_and_down"];
+    let path = |run: &str| shared(&format!("xl330/xl330_{gain}_{run}.csv"));
+    let paths = runs.map(|run| path(run).map(|path| path.display().to_string()));
+    let paths: Option<Vec<String>> = paths.into_iter().collect();
+    Some(paths?.join(" "))
+}
+
+#[test]
+fn a_servo_lacks_load_friction_at_one_gain_and_the_other_gain_confirms_it() {
+    for (gain, other) in [("kp100", "kp400"), ("kp400", "kp100")] {
+        let (Some(data), Some(others)) = (servo(gain), servo(other)) else { return };
+        let desk = Desk::new();
+        let run = desk.aep(&format!(
+            "discover {data} --force duty*v_in_V --base coulomb,viscous,gravity-pendulum \
+             --validate {others} --json out.json"
+        ));
+        assert!(run.done().contains("switched off"));
+        assert!(run.out.contains("load-friction is confirmed"));
+        let json = desk.json("out.json");
+        assert_eq!(json["added"][0], "load-friction");
+        assert_eq!(json["ranking"][0][0]["effect"], "load-friction");
+        let rungs = &json["confirmation"]["rungs"];
+        let error = |rung: usize| rungs[rung]["error"]["torque_relative"].as_f64().unwrap();
+        // Parameters of the one gain on the other.
+        assert!(error(1) < 0.85 * error(0), "{gain}: {} {}", error(0), error(1));
+        assert_eq!(rungs[1]["holds"], true);
+        assert!(rungs[1]["p_value"].as_f64().unwrap() <= 0.05);
+    }
+}

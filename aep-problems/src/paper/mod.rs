@@ -8,6 +8,7 @@
 //! Reference: J.-H. Kim, H.-K. Chae, J.-Y. Jeon, S.-W. Lee, "Identification and Control of Systems
 //! with Friction Using Accelerated Evolutionary Programming", IEEE Control Systems Magazine, 1996.
 
+mod claim;
 mod figures;
 mod printed;
 mod readings;
@@ -15,8 +16,9 @@ mod readings;
 use aep_core::trials::{Plan, RankTest, Trials, rank_test};
 use aep_core::{Budget, Method, RunError};
 
+pub use claim::{Claim, Verdict};
 pub use figures::FIGURES;
-pub use printed::{Claim, Printed};
+pub use printed::Printed;
 pub use readings::Reading;
 
 use crate::Definition;
@@ -111,12 +113,9 @@ impl Figure {
 
 /// The claim that AEP beats meta-EP.
 fn ahead(test: RankTest) -> Claim {
-    Claim {
-        about: "AEP against EP".into(),
-        paper: "AEP ahead".into(),
-        ours: format!("ahead with probability {:.2}, p = {:.0e}", test.effect, test.p_value),
-        agrees: test.effect > 0.5 && test.p_value < 0.05,
-    }
+    let ours = format!("ahead with probability {:.2}, p = {:.0e}", test.effect, test.p_value);
+    let agrees = test.effect > 0.5 && test.p_value < 0.05;
+    Claim::new("AEP against EP", "AEP ahead", ours, agrees)
 }
 
 /// The figure called `name`.

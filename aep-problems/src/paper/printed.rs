@@ -1,9 +1,8 @@
 //! What the paper prints, and when our runs agree with it.
 
 use aep_core::trials::{Trials, quantile};
-use serde::Serialize;
 
-use super::POPULATION;
+use super::{Claim, POPULATION};
 
 /// A statement of the paper about one line of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,24 +28,11 @@ pub enum Printed {
     FailsIn(usize),
 }
 
-/// A statement of the paper beside what our runs say.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Claim {
-    /// Which line.
-    pub about: String,
-    /// What is printed.
-    pub paper: String,
-    /// What comes out here.
-    pub ours: String,
-    /// Whether the two agree, by the rule of [`Printed`].
-    pub agrees: bool,
-}
-
 impl Printed {
     /// This statement held against `trials`.
     pub fn judge(&self, about: &str, trials: &Trials, target: f64) -> Claim {
         let (ours, agrees) = self.compare(trials, target);
-        Claim { about: about.into(), paper: self.text(), ours, agrees }
+        Claim::new(about, self.text(), ours, agrees)
     }
 
     fn text(self) -> String {

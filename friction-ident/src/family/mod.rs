@@ -106,6 +106,14 @@ impl FrictionFamily {
         Ok(family)
     }
 
+    /// The same with the stroke of `other`: a law along the stroke that was identified there then means
+    /// the same places here.
+    #[must_use]
+    pub fn with_stroke_of(mut self, other: &Self) -> Self {
+        self.stroke = other.stroke;
+        self
+    }
+
     /// Linear or rotary.
     pub fn axis(&self) -> Axis {
         self.axis

@@ -1,0 +1,79 @@
+//! Several files as one measurement: each is a piece of its own.
+
+use std::path::{Path, PathBuf};
+
+use missing_physics::{Channel, Recording};
+
+use crate::assemble::Loaded;
+use crate::error::{DataError, Problem};
+use crate::mapping::{Mapping, hold_name};
+use crate::read;
+
+/// Sampling intervals of files that belong together differ by at most this factor.
+const RATES: f64 = 3.0;
+
+/// The recordings in `paths`, all read by one mapping, as the pieces of one recording. It has the
+/// channels that all of them have.
+///
+/// # Errors
+/// Like [`read`]; and where the files are not of one axis, differ in how the force is held, or widely in
+/// their sampling.
+pub fn read_all(paths: &[PathBuf], mapping: &Mapping) -> Result<Loaded, DataError> {
+    let Some((first, others)) = paths.split_first() else {
+        return Err(DataError::new(Path::new(""), Problem::Absent));
+    };
+    let mut all = read(first, mapping)?;
+    for path in others {
+        let next = read(path, mapping)?;
+        agree(&all.recording, &next.recording).map_err(|problem| DataError::new(path, problem))?;
+        all.recording = joined(&all.recording, &next.recording)
+            .map_err(|error| DataError::new(path, Problem::Recording(error)))?;
+        all.switched_off += next.switched_off;
+        all.unused.retain(|name| next.unused.contains(name));
+    }
+    let present = |name: &str| name == "time" || all.recording.channel(name).is_some();
+    all.origins.retain(|origin| present(origin.channel) || origin.channel == "enabled");
+    Ok(all)
+}
+
+fn agree(first: &Recording, next: &Recording) -> Result<(), Problem> {
+    let unit = |recording: &Recording, channel: &str| {
+        recording.channel(channel).map_or_else(String::new, |channel| channel.unit.clone())
+    };
+    for channel in ["force", "position"] {
+        let (here, there) = (unit(next, channel), unit(first, channel));
+        if here != there {
+            return Err(Problem::Differs { what: channel, here, there });
+        }
+    }
+    let (here, there) = (next.hold(), first.hold());
+    if here != there {
+        let (here, there) = (hold_name(here).to_owned(), hold_name(there).to_owned());
+        return Err(Problem::Differs { what: "hold", here, there });
+    }
+    let (here, there) = (next.interval(), first.interval());
+    if here > RATES * there || there > RATES * here {
+        let words = |interval: f64| format!("one sample every {interval:.2e} s");
+        return Err(Problem::Differs { what: "sampling", here: words(here), there: words(there) });
+    }
+    Ok(())
+}
+
+fn joined(
+    first: &Recording,
+    next: &Recording,
+) -> Result<Recording, missing_physics::RecordingError> {
+    let both = first.channels().iter().filter_map(|channel| {
+        let more = next.channel(&channel.name).filter(|more| more.unit == channel.unit)?;
+        let values = [channel.values.as_slice(), &more.values].concat();
+        Some(Channel::new(&channel.name, &channel.unit, values))
+    });
+    let channels = both.collect();
+    let time = [first.time(), next.time()].concat();
+    let pieces = first.segments().iter().chain(next.segments());
+    let segment =
+        (0i64..).zip(pieces).flat_map(|(number, piece)| piece.clone().map(move |_| number));
+    let name = format!("{}, {}", first.name(), next.name());
+    let recording = Recording::with_segments(name, time, channels, segment.collect())?;
+    Ok(recording.with_hold(first.hold()))
+}

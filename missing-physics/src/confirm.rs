@@ -1,0 +1,115 @@
+//! Whether what was found on one measurement holds on another one of the same plant.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::discover::{DiscoverError, Settings, evaluate, suggest, terms};
+use crate::family::{Fitted, ModelFamily};
+use crate::ladder;
+use crate::report::{Rung, SplitError};
+use crate::split::Split;
+
+/// Another view contradicts an effect where its error grows by more than this factor.
+const CONTRADICTION: f64 = 1.05;
+
+/// A rung of a ladder on recordings that had no part in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Confirmation {
+    /// The effect that the rung added; nothing on the base rung.
+    pub added: Option<String>,
+    /// Every effect of the rung.
+    pub effects: Vec<String>,
+    /// Name of the error -> its size with the parameters as they were found, nothing fitted.
+    pub error: BTreeMap<String, f64>,
+    /// Whether the effect, as it was found, removes at least the least gain of the squared error here,
+    /// and no other view contradicts.
+    pub holds: Option<bool>,
+    /// Share of the held-out squared error that the effect removes where the model below it is
+    /// identified anew on these recordings.
+    pub gain: Option<f64>,
+    /// Its p-value there.
+    pub p_value: Option<f64>,
+    /// Its place there among the candidates that gain more than chance, from 1.
+    pub place: Option<usize>,
+}
+
+/// Every rung of `ladder`, found on another family of the same terms, on `family`; `settings` are those
+/// that found it.
+///
+/// # Errors
+/// An effect of the ladder is not among the family's terms.
+pub fn on<F: ModelFamily + ?Sized>(
+    family: &F,
+    ladder: &[Rung],
+    settings: &Settings<'_>,
+) -> Result<Vec<Confirmation>, DiscoverError> {
+    let key = ladder::relative_key(family);
+    let mut all: Vec<Confirmation> = Vec::new();
+    for (k, rung) in ladder.iter().enumerate() {
+        let mut here = as_found(family, rung)?;
+        if let (Some(added), Some(below)) = (&rung.added, k.checked_sub(1)) {
+            let grown = |key: &String| here.error[key] / all[below].error[key];
+            let less = grown(&key).powi(2) <= 1.0 - settings.least_gain;
+            let contradicted = here.error.keys().any(|key| grown(key) > CONTRADICTION);
+            here.holds = Some(less && !contradicted);
+            anew(family, &ladder[below].effects, added, settings, &mut here)?;
+        }
+        all.push(here);
+    }
+    Ok(all)
+}
+
+/// The errors of a rung with the parameters that it has.
+fn as_found<F: ModelFamily + ?Sized>(
+    family: &F,
+    rung: &Rung,
+) -> Result<Confirmation, DiscoverError> {
+    let indices = terms(family, &rung.effects)?;
+    let values = indices.iter().flat_map(|&index| {
+        let term = &family.terms()[index];
+        term.parameters.iter().map(|parameter| {
+            let found = rung.parameters.get(&term.key(parameter));
+            found.map_or(parameter.start, |estimate| estimate.value)
+        })
+    });
+    let values = values.collect();
+    let fit = evaluate(family, Fitted { terms: indices, values });
+    let points = family.target().len();
+    let split = Split::new(points, family.blocks());
+    let fitted = split.fit(points).iter().filter(|fit| **fit).count() as f64 / points as f64;
+    // No part had a part in the fit; together they are all there is.
+    let whole = |error: SplitError| {
+        (fitted * error.fit.powi(2) + (1.0 - fitted) * error.validation.powi(2)).sqrt()
+    };
+    let errors = ladder::errors(family, &fit, &split).into_iter();
+    Ok(Confirmation {
+        added: rung.added.clone(),
+        effects: rung.effects.clone(),
+        error: errors.map(|(name, error)| (name, whole(error))).collect(),
+        holds: None,
+        gain: None,
+        p_value: None,
+        place: None,
+    })
+}
+
+/// What `added` gains on a model of `effects` that is identified on these recordings.
+fn anew<F: ModelFamily + ?Sized>(
+    family: &F,
+    effects: &[String],
+    added: &str,
+    settings: &Settings<'_>,
+    here: &mut Confirmation,
+) -> Result<(), DiscoverError> {
+    let base = effects.to_vec();
+    let once = Settings { base, exclude: settings.exclude.clone(), most: 0, ..*settings };
+    let found = suggest(family, &once, &mut ())?;
+    let candidates = found.ranking.first().map_or(&[][..], Vec::as_slice);
+    let Some(candidate) = candidates.iter().find(|c| c.effect == added) else { return Ok(()) };
+    here.gain = Some(candidate.gain);
+    here.p_value = Some(candidate.p_value);
+    let likely = candidates.iter().filter(|c| c.p_value <= settings.alpha && c.gain > 0.0);
+    here.place = likely.clone().position(|c| c.effect == added).map(|before| before + 1);
+    Ok(())
+}
