@@ -6,16 +6,19 @@
 
 use aep_core::{Batch, Problem};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::{Free, Identification};
 use crate::effects::Scale;
 
 /// Most steps.
-const MAX_STEPS: usize = 100;
+const MAX_STEPS: usize = 60;
+/// Steps of a refit around a parameter that is held.
+const FEW_STEPS: usize = 8;
 /// First and last half-width of a difference, as a share of the width of the search.
 const DIFFERENCE: (f64, f64) = (2e-2, 1e-6);
 /// By how much a difference narrows where it no longer leads down.
-const NARROWER: f64 = 0.5;
+const NARROWER: f64 = 0.3;
 /// Relative fall of the cost that counts as leading down.
 const WORTHWHILE: f64 = 1e-3;
 /// Dampings that are tried at once, as multiples of the last one that led down.
@@ -24,7 +27,12 @@ const DAMPINGS: [f64; 8] = [1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e4, 1e6];
 const LEAST_DAMPING: f64 = 1e-9;
 
 /// Moves of one parameter alone that are tried, as shares of the width of the search.
-const LEAPS: [f64; 10] = [1e-5, 1e-4, 3e-4, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2, 4e-2, 0.1];
+const LEAPS: [f64; 3] = [2e-4, 2e-3, 1e-2];
+
+/// How far a parameter is held aside, as shares of the width of the search.
+const ASIDE: [f64; 4] = [3e-3, 8e-3, 1.8e-2, 4e-2];
+/// Most valleys that are left for a lower one.
+const MAX_ROUNDS: usize = 6;
 
 /// A point and its cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,14 +44,9 @@ pub struct Refined {
 }
 
 impl Identification<'_> {
-    /// Goes down from `x` to the nearest minimum; never up.
+    /// Goes down from `x` to the nearest minimum, and out of dents beside it; never up.
     pub fn refine(&self, x: &[f64]) -> Refined {
-        self.refine_but(x, None)
-    }
-
-    /// The same with parameter `held` where it is.
-    pub(super) fn refine_but(&self, x: &[f64], held: Option<usize>) -> Refined {
-        let active: Vec<usize> = (0..x.len()).filter(|k| Some(*k) != held).collect();
+        let active: Vec<usize> = (0..x.len()).collect();
         let mut at = Refined { position: x.to_vec(), cost: self.evaluate(x) };
         let (mut width, mut damping) = (DIFFERENCE.0, 1e-3);
         for _ in 0..MAX_STEPS {
@@ -59,6 +62,46 @@ impl Identification<'_> {
             width *= NARROWER;
             if width < DIFFERENCE.1 {
                 break;
+            }
+        }
+        at
+    }
+
+    /// Looks for a lower valley beside that of `x`: each parameter in turn is held aside, near or far,
+    /// while all others are fitted anew; from the best of these places it goes down again.
+    pub fn refine_around(&self, x: &[f64]) -> Refined {
+        let mut at = self.refine(x);
+        for _ in 0..MAX_ROUNDS {
+            let places: Vec<(usize, f64)> = (0..x.len())
+                .flat_map(|k| ASIDE.iter().flat_map(move |by| [(k, *by), (k, -*by)]))
+                .collect();
+            let beside = places.into_par_iter().map(|(k, by)| {
+                let mut from = at.position.clone();
+                from[k] = self.free[k].moved(from[k], by);
+                self.refine_but(&from, Some(k))
+            });
+            let beside: Vec<Refined> = beside.collect();
+            let Some(best) = beside.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
+                break;
+            };
+            if !(best.cost < (1.0 - WORTHWHILE) * at.cost) {
+                break;
+            }
+            at = self.refine(&best.position);
+        }
+        at
+    }
+
+    /// Goes down from `x` with parameter `held` where it is: a few steps, without leaps.
+    pub(super) fn refine_but(&self, x: &[f64], held: Option<usize>) -> Refined {
+        let active: Vec<usize> = (0..x.len()).filter(|k| Some(*k) != held).collect();
+        let mut at = Refined { position: x.to_vec(), cost: self.evaluate(x) };
+        let (mut width, mut damping) = (0.1 * DIFFERENCE.0, 1e-3);
+        for _ in 0..FEW_STEPS {
+            let before = at.cost;
+            self.step(&mut at, &active, width, &mut damping);
+            if !(before - at.cost > 0.1 * before) {
+                width *= 0.1;
             }
         }
         at
