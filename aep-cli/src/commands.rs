@@ -5,6 +5,7 @@ use crate::app::Global;
 use crate::failure::Failure;
 
 mod reproduce_optimizers;
+mod reproduce_plant;
 
 /// Makes the commands of `name(module)` pairs: `module::Args` and `module::run`.
 macro_rules! commands {

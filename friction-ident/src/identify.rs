@@ -187,6 +187,12 @@ impl<'a> Identification<'a> {
         values
     }
 
+    /// Position errors (measured minus simulated) at every sample with the free parameters at `x`, m
+    /// or rad.
+    pub fn errors(&self, x: &[f64]) -> Vec<f64> {
+        self.residuals(&[x.to_vec()]).pop().unwrap_or_default()
+    }
+
     /// Position errors at every sample for each candidate, m or rad.
     fn residuals(&self, candidates: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let full: Vec<Vec<f64>> = candidates.iter().map(|x| self.full(x)).collect();
