@@ -2,8 +2,10 @@
 
 mod data;
 mod effects;
+mod horizon;
 mod run;
 
 pub use data::{DataArgs, MappingArgs, words};
-pub use effects::{EffectNames, known};
+pub use effects::{EffectNames, add_files, known, library};
+pub use horizon::{Compared, TimeArgs, TimeTask};
 pub use run::{OutputArgs, RunArgs};

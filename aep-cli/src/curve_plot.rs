@@ -74,13 +74,18 @@ fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve]) -> Drawn {
         .y_desc(axes.y)
         .light_line_style(TRANSPARENT)
         .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { format!("{y}") })
+        .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { tick(*y) })
         .draw()?;
     for (curve, colour) in curves.iter().zip(COLOURS.iter().cycle()) {
         add(&mut chart, curve, *colour)?;
     }
     chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
     Ok(())
+}
+
+/// A mark of an axis without the rounding errors of its spacing.
+fn tick(y: f64) -> String {
+    format!("{}", (y * 1e9).round() / 1e9)
 }
 
 fn add(chart: &mut Chart<'_, '_>, curve: &Curve, colour: RGBColor) -> Drawn {

@@ -149,12 +149,25 @@ fn fill(profile: Profile) -> Reference {
 /// # Errors
 /// The simulation fails.
 pub fn training_data(table: &Model, max_step: f64) -> Result<Recording, ClosedLoopError> {
+    training_data_with_noise(table, max_step, 0.0)
+}
+
+/// The same with noise of this standard deviation (N) on the recorded force.
+///
+/// # Errors
+/// The simulation fails.
+pub fn training_data_with_noise(
+    table: &Model,
+    max_step: f64,
+    force_noise: f64,
+) -> Result<Recording, ClosedLoopError> {
     let (mut force, mut position, mut reference) = (Vec::new(), Vec::new(), Vec::new());
-    for block in references() {
-        let setup = Setup { encoder_resolution: ENCODER, max_step, ..Setup::default() };
+    for (seed, block) in (1..).zip(references()) {
+        let encoder_resolution = ENCODER;
+        let setup = Setup { encoder_resolution, max_step, force_noise, seed, ..Setup::default() };
         let mut pd = Pd::new(PROPORTIONAL, DERIVATIVE);
         let run = closed_loop(table, &block, &mut pd, &setup)?;
-        force.extend_from_slice(&run.command);
+        force.extend_from_slice(run.recording.require("force")?);
         position.extend_from_slice(run.recording.require("position")?);
         reference.extend_from_slice(&block.position);
     }

@@ -10,8 +10,9 @@
 //! the two variances (J. T. Kent, Biometrika 69, 1982).
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
-use super::Identification;
+use super::{Free, Identification};
 use crate::effects::Scale;
 
 /// Blocks within which errors may be correlated.
@@ -20,6 +21,8 @@ const BLOCKS: usize = 20;
 const T: f64 = 2.093;
 /// A parameter that may be changed by this factor is not determined.
 const FACTOR: f64 = 10.0;
+/// A mean square error beyond this multiple of the encoder's is one of the model.
+const FAILS: f64 = 25.0;
 /// Bounds of the first move away from the estimate, as shares of the width of the search.
 const FIRST: (f64, f64) = (1e-4, 0.05);
 /// Each move is so much longer than the one before.
@@ -40,18 +43,60 @@ pub struct Interval {
 
 /// Intervals of the free parameters of `task` around the optimum `x`.
 pub fn intervals(task: &Identification<'_>, x: &[f64]) -> Vec<Interval> {
+    intervals_over(task, std::slice::from_ref(&x.to_vec()))
+}
+
+/// Intervals that cover all optima of `found`, the ends of several searches, that fit as well as the
+/// best of them: one valley alone knows nothing of the others.
+pub fn intervals_over(task: &Identification<'_>, found: &[Vec<f64>]) -> Vec<Interval> {
+    let squares: Vec<f64> =
+        task.residuals(found).iter().map(|errors| mean_square(errors)).collect();
+    let best = (0..found.len()).min_by(|a, b| squares[*a].total_cmp(&squares[*b]));
+    let Some(best) = best else { return Vec::new() };
+    let limits = limits(task, &found[best]);
+    let mut all = around(task, &found[best], &limits);
+    for (x, square) in found.iter().zip(&squares).filter(|(x, _)| **x != found[best]) {
+        if limits.iter().all(|(_, limit)| square > limit) {
+            continue;
+        }
+        let others = around(task, x, &limits);
+        for (k, (interval, other)) in all.iter_mut().zip(others).enumerate() {
+            if *square <= limits[k].1 {
+                interval.low = interval.low.min(other.low);
+                interval.high = interval.high.max(other.high);
+                interval.identifiable &= other.identifiable;
+            }
+        }
+    }
+    for (interval, free) in all.iter_mut().zip(task.free()) {
+        interval.identifiable &= !wide(free, interval.low, interval.high);
+    }
+    all
+}
+
+fn around(task: &Identification<'_>, x: &[f64], limits: &[(f64, f64)]) -> Vec<Interval> {
+    limits
+        .par_iter()
+        .enumerate()
+        .map(|(k, (spread, limit))| interval(task, x, k, *spread, *limit))
+        .collect()
+}
+
+/// Spread of each parameter around the optimum `x`, and the largest mean square error at which a value
+/// still fits.
+fn limits(task: &Identification<'_>, x: &[f64]) -> Vec<(f64, f64)> {
     let at_optimum = task.residuals(&[x.to_vec()]).remove(0);
     let spreads = spreads(&jacobian(task, x), &at_optimum);
     let (_, noise) = task.scales();
     let square = mean_square(&at_optimum);
     let samples = at_optimum.len() as f64;
-    (0..x.len())
-        .map(|k| {
-            let spread = &spreads[k];
-            let limit = square + square.max(noise) * T * T * spread.inflation / samples;
-            interval(task, x, k, spread.robust, limit)
-        })
-        .collect()
+    // Errors far beyond the encoder's are those of the model, and last as long as a block.
+    let fails = square > FAILS * noise;
+    let limit = |spread: &Spread| {
+        let inflation = if fails { samples / BLOCKS as f64 } else { spread.inflation };
+        square + square.max(noise) * T * T * inflation / samples
+    };
+    spreads.iter().map(|spread| (spread.robust, limit(spread))).collect()
 }
 
 fn interval(task: &Identification<'_>, x: &[f64], k: usize, spread: f64, limit: f64) -> Interval {
@@ -59,11 +104,15 @@ fn interval(task: &Identification<'_>, x: &[f64], k: usize, spread: f64, limit: 
     let first = if spread.is_finite() { 0.5 * T * spread } else { FIRST.1 };
     let first = first.clamp(FIRST.0, FIRST.1);
     let [low, high] = [-1.0, 1.0].map(|side| reach(task, x, k, side * first, limit));
-    let wide = match free.scale {
+    let identifiable = spread.is_finite() && !wide(free, low, high);
+    Interval { value: x[k], low, high, identifiable }
+}
+
+fn wide(free: &Free, low: f64, high: f64) -> bool {
+    match free.scale {
         Scale::Log => high > FACTOR * low,
         Scale::Linear => high - low > 0.5 * (free.high - free.low),
-    };
-    Interval { value: x[k], low, high, identifiable: spread.is_finite() && !wide }
+    }
 }
 
 /// How far parameter `k` can be moved, beginning with the share `first` of its width, with all others

@@ -50,6 +50,9 @@ impl Identification<'_> {
         let mut at = Refined { position: x.to_vec(), cost: self.evaluate(x) };
         let (mut width, mut damping) = (DIFFERENCE.0, 1e-3);
         for _ in 0..MAX_STEPS {
+            if self.is_stopped() {
+                break;
+            }
             let before = at.cost;
             self.step(&mut at, &active, width, &mut damping);
             if before - at.cost > WORTHWHILE * before {
@@ -72,6 +75,9 @@ impl Identification<'_> {
     pub fn refine_around(&self, x: &[f64]) -> Refined {
         let mut at = self.refine(x);
         for _ in 0..MAX_ROUNDS {
+            if self.is_stopped() {
+                break;
+            }
             let places: Vec<(usize, f64)> = (0..x.len())
                 .flat_map(|k| ASIDE.iter().flat_map(move |by| [(k, *by), (k, -*by)]))
                 .collect();
@@ -98,6 +104,9 @@ impl Identification<'_> {
         let mut at = Refined { position: x.to_vec(), cost: self.evaluate(x) };
         let (mut width, mut damping) = (0.1 * DIFFERENCE.0, 1e-3);
         for _ in 0..FEW_STEPS {
+            if self.is_stopped() {
+                break;
+            }
             let before = at.cost;
             self.step(&mut at, &active, width, &mut damping);
             if !(before - at.cost > 0.1 * before) {
