@@ -18,6 +18,7 @@
 pub mod axis;
 pub mod challenge;
 pub mod closed_loop;
+pub mod control;
 pub mod driven;
 pub mod effects;
 pub mod family;

@@ -164,7 +164,7 @@ pub fn training_data_with_noise(
     let (mut force, mut position, mut reference) = (Vec::new(), Vec::new(), Vec::new());
     for (seed, block) in (1..).zip(references()) {
         let encoder_resolution = ENCODER;
-        let setup = Setup { encoder_resolution, max_step, force_noise, seed, ..Setup::default() };
+        let setup = Setup { encoder_resolution, force_noise, max_step, seed, ..Setup::default() };
         let mut pd = Pd::new(PROPORTIONAL, DERIVATIVE);
         let run = closed_loop(table, &block, &mut pd, &setup)?;
         force.extend_from_slice(run.recording.require("force")?);

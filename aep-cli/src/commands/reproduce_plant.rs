@@ -264,7 +264,9 @@ fn outputs(
     keep(files, &path(".svg"), &curve_plot::svg(axes, &curves)?)?;
     // Beside the fast block the slow ones cannot be seen.
     let fast = 3.0 * paper::BLOCK as f64 * SAMPLE_TIME;
-    curves.iter_mut().for_each(|curve| curve.points.retain(|(t, _)| *t < fast));
+    for curve in &mut curves {
+        curve.points.retain(|(t, _)| *t < fast);
+    }
     let axes = Axes { title: "Fig. 12: the three slow blocks", ..axes };
     keep(files, &path("-slow.svg"), &curve_plot::svg(axes, &curves)?)
 }

@@ -1,6 +1,7 @@
 //! The command line as users meet it: what they type, what they read, which files they get.
 
 mod bad_input;
+mod control;
 mod discovery;
 mod files;
 mod harness;

@@ -5,6 +5,7 @@
 
 pub mod compare;
 mod coordinates;
+pub mod experiment;
 mod filter;
 mod full_rate;
 mod limits;
@@ -49,10 +50,12 @@ pub struct Options {
 }
 
 /// See the module.
+#[derive(Clone)]
 pub struct FrictionFamily {
     recording: Recording,
     prepared: Prepared,
     axis: Axis,
+    library: Library,
     effects: Vec<&'static dyn Effect>,
     terms: Vec<Term>,
     time: Vec<f64>,
@@ -90,6 +93,7 @@ impl FrictionFamily {
         let mut family = Self {
             recording: recording.clone(),
             axis,
+            library: options.library.clone(),
             effects,
             terms,
             time: prepared.sample(&prepared.time),

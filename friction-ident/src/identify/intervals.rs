@@ -128,8 +128,7 @@ fn reach(task: &Identification<'_>, x: &[f64], k: usize, first: f64, limit: f64)
         let ends = from[k] <= free.low || from[k] >= free.high;
         from = task.refine_but(&from, Some(k)).position;
         let square = mean_square(&task.residuals(std::slice::from_ref(&from))[0]);
-        // False for NaN.
-        if !(square <= limit) {
+        if square > limit || square.is_nan() {
             return free.moved(x[k], between(within, (share, square - origin), limit - origin));
         }
         if ends {

@@ -90,7 +90,8 @@ impl Identification<'_> {
             let Some(best) = beside.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
                 break;
             };
-            if !(best.cost < (1.0 - WORTHWHILE) * at.cost) {
+            let lower = best.cost < (1.0 - WORTHWHILE) * at.cost;
+            if !lower {
                 break;
             }
             at = self.refine(&best.position);
@@ -109,7 +110,8 @@ impl Identification<'_> {
             }
             let before = at.cost;
             self.step(&mut at, &active, width, &mut damping);
-            if !(before - at.cost > 0.1 * before) {
+            let paid = before - at.cost > 0.1 * before;
+            if !paid {
                 width *= 0.1;
             }
         }
