@@ -283,4 +283,43 @@ mod tests {
         let run = closed_loop(&model, &reference, &mut wild, &Setup::default());
         assert!(matches!(run, Err(ClosedLoopError::Simulation(_))), "{run:?}");
     }
+
+    #[test]
+    fn stick_is_noted_until_the_controller_overcomes_the_friction() {
+        let n = 400;
+        let velocity = vec![1e-3; n];
+        let position = (0..n).map(|k| k as f64 * 1e-6).collect();
+        let reference =
+            Reference { sample_time: 1e-3, position, velocity, acceleration: vec![0.0; n] };
+        let contact = table().with("presliding", &[("k_t", 1e7)]).unwrap();
+        for model in [table(), contact] {
+            let run = closed_loop(&model, &reference, &mut Pd::new(1e5, 0.0), &Setup::default());
+            let run = run.unwrap();
+            // 8 N at 1e5 N/m and 1 mm/s are 80 ms.
+            let free = run.stuck.iter().position(|stuck| *stuck < 0.5).unwrap();
+            assert!((78..=84).contains(&free), "{free}");
+            assert!(run.stuck[..free].iter().all(|stuck| *stuck > 0.5));
+            assert!(run.velocity[free + 5] > 0.0);
+        }
+    }
+
+    #[test]
+    fn watching_for_stick_changes_no_motion() {
+        for contact in [None, Some("presliding:static"), Some("presliding:lugre")] {
+            let model = contact.map_or_else(|| Ok(table()), |name| table().with(name, &[]));
+            let model = model.unwrap();
+            let motion = |mut plants: Plants| -> Vec<f64> {
+                plants.start(0, &Start::at(0.0, 0.0));
+                let force = |k: usize| 20.0 * (k as f64 * 0.02).sin();
+                (0..2000)
+                    .map(|k| {
+                        plants.step(&[5e-4], &[force(k)]);
+                        plants.position()[0]
+                    })
+                    .collect()
+            };
+            let plants = || Plants::uniform(&model, 1);
+            assert_eq!(motion(plants()), motion(plants().watched()), "{contact:?}");
+        }
+    }
 }

@@ -4,9 +4,9 @@
 //! # How the printed numbers are read
 //! The printed mass of 0.034 "Kg" must be 0.034 kgf s^2/cm, that is 33.3 kg: 0.034 kg would give the
 //! table a time constant of 82 us under a controller that samples every 5 ms. Forces are in kgf,
-//! lengths in cm. The printed controller gains have no units; read per count and per sample they make
-//! a loop with 33 kg unstable, so gains are used that the same loop bears ([`PROPORTIONAL`],
-//! [`DERIVATIVE`]).
+//! lengths in cm. The printed controller gains have no units; read in kgf per count and per sample they
+//! make a loop that only the viscous friction keeps from being unstable ([`crate::control::paper`]), so
+//! gains are used that the same loop bears ([`PROPORTIONAL`], [`DERIVATIVE`]).
 
 use aep_core::{Budget, Method, Outcome};
 use missing_physics::{Channel, Hold, Recording};

@@ -234,8 +234,8 @@ fn deviation_table(case: &Case, deviations: &[Deviation]) -> String {
         ("parameter", Align::Left),
         ("off by", Align::Right),
         ("RMS error", Align::Right),
-        ("against exact", Align::Right),
-        ("stick episodes", Align::Right),
+        ("factor", Align::Right),
+        ("sticks", Align::Right),
         ("what happens", Align::Left),
     ]);
     for deviation in deviations {

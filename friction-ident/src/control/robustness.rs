@@ -9,7 +9,7 @@ use crate::reference::Reference;
 
 use super::compensator::{Compensator, Settings};
 use super::measures::Measures;
-use super::trial::{ControlError, Servo, Trial, run};
+use super::trial::{ControlError, Servo, Trial, run, samples};
 
 /// The compensation with one parameter off.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,7 +29,7 @@ pub struct Deviation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Behaviour {
-    /// More force in the direction of motion than the model as it is gives.
+    /// More force in the direction of motion than the plant takes.
     OverCompensated,
     /// Less force.
     UnderCompensated,
@@ -75,11 +75,11 @@ pub fn robustness(
 ) -> Result<Vec<Deviation>, ControlError> {
     let exact = Compensator::new(model, settings)?;
     let exact = run(plant, reference, servo, Some(&exact))?;
-    let usual = mean_force(&exact, reference);
+    let needed = needed(plant, &exact, reference, settings);
     let nominal = Deviation {
         parameter: "none".into(),
         factor: 1.0,
-        behaviour: behaviour(&exact.measures, usual, usual),
+        behaviour: behaviour(&exact.measures, mean_force(&exact.compensation, reference), needed),
         measures: exact.measures,
     };
     let mut cases = Vec::new();
@@ -91,8 +91,8 @@ pub fn robustness(
         let compensator = Compensator::new(&changed, settings)?;
         let (measures, behaviour) = match run(plant, reference, servo, Some(&compensator)) {
             Ok(trial) => {
-                let force = mean_force(&trial, reference);
-                let found = behaviour(&trial.measures, force, usual);
+                let force = mean_force(&trial.compensation, reference);
+                let found = behaviour(&trial.measures, force, needed);
                 (trial.measures, found)
             }
             Err(ControlError::Loop(_)) => (Measures::default(), vec![Behaviour::RunsAway]),
@@ -133,15 +133,25 @@ fn changed(model: &Model, parameter: &str, factor: f64) -> Model {
     changed
 }
 
-/// Mean compensation in the direction of the reference's motion, N or N m.
-fn mean_force(trial: &Trial, reference: &Reference) -> f64 {
-    let moving = || trial.compensation.iter().zip(&reference.velocity).filter(|(_, v)| **v != 0.0);
+/// Mean force in the direction of motion that the plant takes: that of its own compensator, or of the
+/// one that ran where the plant has nothing that can be compensated.
+fn needed(plant: &Model, ran: &Trial, reference: &Reference, settings: Settings) -> f64 {
+    let Ok(mut own) = Compensator::new(plant, settings) else {
+        return mean_force(&ran.compensation, reference);
+    };
+    let seen = samples(&ran.run, reference);
+    mean_force(&seen.iter().map(|sample| own.force(sample)).collect::<Vec<f64>>(), reference)
+}
+
+/// Mean of forces in the direction of the reference's motion, N or N m.
+fn mean_force(forces: &[f64], reference: &Reference) -> f64 {
+    let moving = || forces.iter().zip(&reference.velocity).filter(|(_, v)| **v != 0.0);
     moving().map(|(force, v)| force * v.signum()).sum::<f64>() / moving().count().max(1) as f64
 }
 
-fn behaviour(measures: &Measures, force: f64, usual: f64) -> Vec<Behaviour> {
+fn behaviour(measures: &Measures, force: f64, needed: f64) -> Vec<Behaviour> {
     let mut found = Vec::new();
-    let (more, share) = (force - usual, SHARE * usual.abs());
+    let (more, share) = (force - needed, SHARE * needed.abs());
     if more > share {
         found.push(Behaviour::OverCompensated);
     }
@@ -191,5 +201,20 @@ mod tests {
             assert!((seen - lag).abs() < start, "{seen} {lag}");
             assert!(of("viscous.F_v", factor).measures.rms_error < deviation.measures.rms_error);
         }
+        assert!(found[0].behaviour.is_empty());
+    }
+
+    #[test]
+    fn a_model_without_what_the_plant_has_is_called_too_little_as_it_is() {
+        let model = Model::new(Axis::Linear, 30.0)
+            .and_then(|m| m.with("coulomb", &[("F_C", 10.0)]))
+            .unwrap();
+        let plant = model.clone().with("viscous", &[("F_v", 100.0)]).unwrap();
+        let servo = Servo::for_mass(30.0, 1e-3);
+        let reference = Course::Ramp { speed: 0.01 }.sampled(1e-3, 2.0);
+        let settings = Settings::new(1e-3, 1e-3);
+        let found = robustness(&plant, &model, &reference, &servo, settings, &[1.2]).unwrap();
+        assert_eq!(found[0].behaviour, [Behaviour::UnderCompensated]);
+        assert_eq!(found[1].behaviour, [Behaviour::OverCompensated]);
     }
 }
