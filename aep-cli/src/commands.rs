@@ -6,6 +6,7 @@ use crate::failure::Failure;
 
 mod reproduce_control;
 mod reproduce_optimizers;
+mod reproduce_plant;
 
 /// Makes the commands of `name(module)` pairs: `module::Args` and `module::run`.
 macro_rules! commands {

@@ -191,7 +191,8 @@ fn sample(reference: &Reference, k: usize, position: f64) -> Sample {
     }
 }
 
-fn quantise(x: f64, resolution: f64) -> f64 {
+/// What an encoder of this resolution shows; 0 for a perfect one.
+pub(crate) fn quantise(x: f64, resolution: f64) -> f64 {
     if resolution > 0.0 { (x / resolution).round() * resolution } else { x }
 }
 

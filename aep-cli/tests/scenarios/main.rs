@@ -8,3 +8,4 @@ mod harness;
 mod help;
 mod loop_by_hand;
 mod optimizers;
+mod plant;
