@@ -57,6 +57,9 @@ impl Observer for Progress {
                 let (before, after) = (percent(*before), percent(*after));
                 self.line.println(format!("+ {effect}: held-out error {before} -> {after}"));
             }
+            Event::Replaced { from, to } => {
+                self.line.println(format!("~ {from}: its form {to} does as much as a new effect"));
+            }
             Event::Dropped { effect } => {
                 self.line.println(format!("- {effect}: no longer needed"));
             }

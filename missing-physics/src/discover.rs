@@ -88,6 +88,13 @@ pub enum Event<'a> {
         /// Relative error on held-out data after.
         after: f64,
     },
+    /// Another form of an effect added before does as much as a new effect would.
+    Replaced {
+        /// Name of the form that it had.
+        from: &'a str,
+        /// Name of the form that it has now.
+        to: &'a str,
+    },
     /// An effect added before is no longer needed.
     Dropped {
         /// Name of the effect.
@@ -231,6 +238,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             let chosen = single
                 .or_else(|| self.best_pair(&last_screening).filter(|best| !self.in_time(best)));
             let Some(chosen) = chosen else { break };
+            if let Some((old, better)) = self.other_form(&chosen) {
+                self.replace(old, better);
+                continue;
+            }
             let newest = chosen.terms.len();
             self.add(chosen);
             self.drop_idle(newest);
@@ -345,10 +356,52 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// A term re-identified with the whole model, its shapes searched around `values`.
     fn tried(&self, term: usize, values: &[f64], p_value: f64) -> Tried {
+        self.tried_from(&self.fit, term, values, p_value)
+    }
+
+    /// The same beside another model than the present one.
+    fn tried_from(&self, beside: &Fit, term: usize, values: &[f64], p_value: f64) -> Tried {
         let start =
-            search::shaped(self.family, &self.fit, term, values, &self.fitted, self.settings.seed);
+            search::shaped(self.family, beside, term, values, &self.fitted, self.settings.seed);
         let fit = fit::refine(self.family, start, &self.fitted);
         Tried::new(&[term], fit, p_value)
+    }
+
+    /// Another form of an effect that is in the model already, with which the model leaves no more than
+    /// with a new effect beside the form that it has.
+    fn other_form(&self, chosen: &Tried) -> Option<(usize, Tried)> {
+        let main = |term: usize| self.family.form_of(term).unwrap_or(term);
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let screening = self.screening(&[], &weights);
+        let mut best: Option<(usize, Tried)> = None;
+        for old in self.ladder.added() {
+            let forms = (0..self.family.terms().len())
+                .filter(|&form| form != old && main(form) == main(old))
+                .collect::<Vec<_>>();
+            if forms.is_empty() || self.stopped() {
+                continue;
+            }
+            let without = self.fit.model.without(self.family, old);
+            let without = fit::refine(self.family, without, &self.fitted);
+            for form in forms {
+                let values = screen::best_values(self.family, &without, &screening, form);
+                let Some(values) = values else { continue };
+                let tried = self.tried_from(&without, form, &values, chosen.p_value);
+                let leaves = best.as_ref().map_or(chosen.square, |(_, best)| best.square);
+                if tried.square <= leaves && self.confirmed(&tried.fit) {
+                    best = Some((old, tried));
+                }
+            }
+        }
+        best
+    }
+
+    fn replace(&mut self, old: usize, tried: Tried) {
+        let (from, to) = (old, tried.terms[0]);
+        let terms = self.family.terms();
+        self.observer.event(&Event::Replaced { from: &terms[from].name, to: &terms[to].name });
+        self.fit = tried.fit;
+        self.ladder.replace(from, to, &self.fit);
     }
 
     /// Whether a parameter of the tried term ended at a limit of its search: what the term says beyond

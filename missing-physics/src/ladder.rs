@@ -58,6 +58,19 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         }
     }
 
+    /// Replaces the last rung by one in which a term has another form.
+    pub(crate) fn replace(&mut self, from: usize, to: usize, fit: &Fit) {
+        self.added.iter_mut().filter(|term| **term == from).for_each(|term| *term = to);
+        self.rivals.iter_mut().filter(|(term, _)| *term == from).for_each(|(term, _)| *term = to);
+        if let Some(last) = self.rungs.pop() {
+            let names = [from, to].map(|term| self.family.terms()[term].name.as_str());
+            let renamed = |name: String| if name == names[0] { names[1].to_owned() } else { name };
+            let rung = self.rung(last.added.map(renamed), fit, last.p_value);
+            self.rungs.push(rung);
+            self.ranking.pop();
+        }
+    }
+
     pub(crate) fn rank(&mut self, screened: &[Screened]) {
         let row = screened.iter().map(|candidate| Candidate {
             effect: self.family.terms()[candidate.term].name.clone(),

@@ -122,7 +122,11 @@ impl Case {
             Self::unlisted(H::Dent, "dent in the way", &["position", "spatial spectrum"]),
             Self {
                 answers: vec!["position-friction"],
-                ..Self::unlisted(H::RandomProfile, "random friction profile", &["position"])
+                ..Self::unlisted(
+                    H::RandomProfile,
+                    "random friction profile",
+                    &["position (against motion)"],
+                )
             },
         ]
     }
