@@ -1,9 +1,11 @@
 //! From the arguments to the exit code.
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
 
+use crate::args;
 use crate::commands::Command;
 use crate::failure::{BAD_INPUT, Failure};
 use crate::output;
@@ -18,6 +20,10 @@ use crate::output;
 struct Cli {
     #[command(flatten)]
     global: Global,
+    /// An effect of your own as a line of text in a TOML file (see examples/cogging.toml); it joins the
+    /// library. May be given several times
+    #[arg(long, global = true, value_name = "FILE")]
+    effects_file: Vec<PathBuf>,
     #[command(subcommand)]
     command: Command,
 }
@@ -66,6 +72,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
         pool.build_global().map_err(|error| Failure::failed(error.to_string()))?;
     }
+    args::add_files(&cli.effects_file)?;
     cli.command.run(cli.global)
 }
 

@@ -4,7 +4,9 @@
 use crate::app::Global;
 use crate::failure::Failure;
 
+mod reproduce_control;
 mod reproduce_optimizers;
+mod reproduce_plant;
 
 /// Makes the commands of `name(module)` pairs: `module::Args` and `module::run`.
 macro_rules! commands {
@@ -38,6 +40,8 @@ commands! {
     Suggest(suggest),
     Extend(extend),
     Simulate(simulate),
+    Control(control),
+    Export(export),
     Challenge(challenge),
     Effects(effects),
     Optimize(optimize),
@@ -46,9 +50,17 @@ commands! {
 }
 
 /// A number above 0.
-fn positive(text: &str) -> Result<f64, String> {
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
         _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+/// A number of at least 0.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value >= 0.0 && f64::is_finite(value) => Ok(value),
+        _ => Err("it must be a number of at least 0".to_owned()),
     }
 }

@@ -42,12 +42,17 @@ const COLOURS: [RGBColor; 7] = [
 
 /// The plot as the text of an SVG file.
 pub fn svg(axes: Axes<'_>, curves: &[Curve]) -> Result<String, Failure> {
+    svg_against(axes, curves, &[])
+}
+
+/// The same with curves to be compared with, dashed and on top.
+pub fn svg_against(axes: Axes<'_>, curves: &[Curve], dashed: &[Curve]) -> Result<String, Failure> {
     let mut text = String::new();
     let failed = |error: &dyn std::fmt::Display| Failure::failed(format!("cannot plot: {error}"));
     {
         let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
         area.fill(&WHITE).map_err(|error| failed(&error))?;
-        draw(&area, axes, curves).map_err(|error| failed(&error))?;
+        draw(&area, axes, curves, dashed).map_err(|error| failed(&error))?;
         area.present().map_err(|error| failed(&error))?;
     }
     Ok(text)
@@ -57,9 +62,11 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 type Drawn = Result<(), Box<dyn std::error::Error>>;
 
-fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve]) -> Drawn {
-    let curves: Vec<Curve> = curves.iter().map(|curve| scaled(curve, axes.logarithmic)).collect();
-    let (x, y) = limits(&curves);
+fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve], dashed: &[Curve]) -> Drawn {
+    let all = curves.iter().chain(dashed).map(|curve| scaled(curve, axes.logarithmic));
+    let all: Vec<Curve> = all.collect();
+    let (x, y) = limits(&all);
+    let (curves, dashed) = all.split_at(curves.len());
     let mut chart = ChartBuilder::on(area)
         .caption(axes.title, ("sans-serif", 18))
         .margin(12)
@@ -73,14 +80,22 @@ fn draw(area: &Area<'_>, axes: Axes<'_>, curves: &[Curve]) -> Drawn {
         .x_desc(axes.x)
         .y_desc(axes.y)
         .light_line_style(TRANSPARENT)
-        .x_label_formatter(&|x| format!("{x:.0}"))
-        .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { format!("{y}") })
+        .x_label_formatter(&|x| tick(*x))
+        .y_label_formatter(&|y| if logarithmic { format!("1e{y:.0}") } else { tick(*y) })
         .draw()?;
     for (curve, colour) in curves.iter().zip(COLOURS.iter().cycle()) {
         add(&mut chart, curve, *colour)?;
     }
+    for curve in dashed {
+        add_dashed(&mut chart, curve)?;
+    }
     chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
     Ok(())
+}
+
+/// A place on an axis without the rounding errors of its making.
+fn tick(place: f64) -> String {
+    ((place * 1e9).round() / 1e9).to_string()
 }
 
 fn add(chart: &mut Chart<'_, '_>, curve: &Curve, colour: RGBColor) -> Drawn {
@@ -95,6 +110,25 @@ fn add(chart: &mut Chart<'_, '_>, curve: &Curve, colour: RGBColor) -> Drawn {
         .draw_series(LineSeries::new(curve.points.iter().copied(), style))?
         .label(&curve.label)
         .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+    Ok(())
+}
+
+/// Length of a dash and of a gap, in points.
+const DASH: (i32, i32) = (7, 5);
+
+fn add_dashed(chart: &mut Chart<'_, '_>, curve: &Curve) -> Drawn {
+    let style = BLACK.stroke_width(1);
+    chart
+        .draw_series(DashedLineSeries::new(curve.points.iter().copied(), DASH.0, DASH.1, style))?
+        .label(&curve.label)
+        .legend(move |(x, y)| {
+            plotters::element::DashedPathElement::new(
+                vec![(x, y), (x + 18, y)],
+                DASH.0,
+                DASH.1,
+                style,
+            )
+        });
     Ok(())
 }
 

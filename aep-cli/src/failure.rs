@@ -6,6 +6,7 @@ use aep_data::{DataError, SaveError};
 use friction_ident::ModelError;
 use friction_ident::effects::UnknownEffect;
 use friction_ident::family::PreparationError;
+use friction_ident::identify::IdentifyError;
 use missing_physics::DiscoverError;
 
 /// Exit code of wrong usage and bad input.
@@ -80,6 +81,12 @@ impl From<SaveError> for Failure {
 
 impl From<ModelError> for Failure {
     fn from(error: ModelError) -> Self {
+        Self::from_lines(&error.to_string())
+    }
+}
+
+impl From<IdentifyError> for Failure {
+    fn from(error: IdentifyError) -> Self {
         Self::from_lines(&error.to_string())
     }
 }

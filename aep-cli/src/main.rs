@@ -5,6 +5,7 @@ mod args;
 mod commands;
 mod curve_plot;
 mod example;
+mod experiment;
 mod failure;
 mod output;
 mod progress;

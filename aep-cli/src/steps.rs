@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use aep_core::{Aep, MetaEp, Method};
+use friction_ident::Model;
 use friction_ident::family::{FrictionFamily, Options};
-use friction_ident::{Library, Model};
 use missing_physics::data_check::cut_at_gaps;
 use missing_physics::discover::{evaluate, terms, weights};
 use missing_physics::fit::Fit;
@@ -17,7 +17,12 @@ use missing_physics::{
     uncertainty,
 };
 
+use crate::args::library;
 use crate::failure::Failure;
+
+mod in_time;
+
+pub use in_time::identify_in_time;
 
 /// A name and what makes the optimizer.
 type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
@@ -29,7 +34,7 @@ pub const ALGORITHMS: &[NamedMethod] =
 /// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
     let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::new(&whole, &Options { bandwidth, library: Library::builtin() })?)
+    Ok(FrictionFamily::new(&whole, &Options { bandwidth, library: library() })?)
 }
 
 /// Reads MODEL.json.
@@ -39,7 +44,7 @@ pub fn read_model(path: &Path) -> Result<Model, Failure> {
             "'aep identify DATA --effects coulomb,viscous,offset -o MODEL.json' makes one",
         )
     })?;
-    Model::from_json(&text, &Library::builtin()).map_err(|error| Failure::from(error).in_file(path))
+    Model::from_json(&text, &library()).map_err(|error| Failure::from(error).in_file(path))
 }
 
 /// The blocks of a family that are fitted, as weights, and the split they come from.

@@ -49,7 +49,9 @@ fn run(
     let (mut good, mut all) = ([0; 8], 0);
     for seed in 1..=seeds {
         let start = Instant::now();
-        let found = paper::identify(task, method, generations, seed)?;
+        let mut found = paper::identify(task, method, generations, seed)?;
+        let polished = task.refine(&found.position);
+        (found.position, found.cost) = (polished.position, polished.cost);
         let ratios: Vec<String> = PARAMETERS
             .iter()
             .zip(&found.position)

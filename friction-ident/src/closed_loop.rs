@@ -15,8 +15,10 @@ use crate::simulator::{Plants, SimulationError, Start};
 pub struct Setup {
     /// Resolution of the encoder, m or rad; 0 for none.
     pub encoder_resolution: f64,
-    /// The command is limited to this size, N or N m.
+    /// The command is limited to this size, N or N m; the range of the D/A converter.
     pub force_limit: f64,
+    /// Resolution of the D/A converter, N or N m; 0 for none.
+    pub force_resolution: f64,
     /// Standard deviation of the noise of the recorded force, N or N m.
     pub force_noise: f64,
     /// Longest step of the simulation, s.
@@ -30,6 +32,7 @@ impl Default for Setup {
         Self {
             encoder_resolution: 1e-6,
             force_limit: f64::INFINITY,
+            force_resolution: 0.0,
             force_noise: 0.0,
             max_step: 2.5e-4,
             seed: 0,
@@ -131,6 +134,8 @@ pub struct Run {
     pub velocity: Vec<f64>,
     /// Command without noise, N or N m.
     pub command: Vec<f64>,
+    /// Share of the time from this sample to the next in which the friction holds the axis, 0..1.
+    pub stuck: Vec<f64>,
 }
 
 /// Runs `controller` on `model`, which starts at rest on the reference.
@@ -143,12 +148,13 @@ pub fn closed_loop(
     controller: &mut dyn Controller,
     setup: &Setup,
 ) -> Result<Run, ClosedLoopError> {
-    let mut batch = Plants::new(std::slice::from_ref(model))?;
+    let mut batch = Plants::new(std::slice::from_ref(model))?.watched();
     let first = reference.position.first().copied().unwrap_or(0.0);
     batch.start(0, &Start::at(first, 0.0));
     let samples = reference.position.len();
     let (mut position, mut velocity) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
     let (mut command, mut shown) = (Vec::with_capacity(samples), Vec::with_capacity(samples));
+    let mut stuck = Vec::with_capacity(samples);
     for k in 0..samples {
         let (x, v) = (batch.position()[0], batch.velocity()[0]);
         let sample = sample(reference, k, quantise(x, setup.encoder_resolution));
@@ -159,16 +165,20 @@ pub fn closed_loop(
         position.push(x);
         velocity.push(v);
         shown.push(sample.position);
-        let force = controller.command(&sample).clamp(-setup.force_limit, setup.force_limit);
+        let force = quantise(controller.command(&sample), setup.force_resolution)
+            .clamp(-setup.force_limit, setup.force_limit);
         command.push(force);
         let steps = (reference.sample_time / setup.max_step - 1e-6).ceil().max(1.0);
+        let mut slides = 0.0;
         for _ in 0..steps as usize {
             batch.step(&[reference.sample_time / steps], &[force]);
+            slides += batch.sliding()[0];
         }
+        stuck.push(1.0 - slides / steps);
     }
     let force = noisy(&command, setup);
     let recording = record(model, reference, force, shown)?;
-    Ok(Run { recording, position, velocity, command })
+    Ok(Run { recording, position, velocity, command, stuck })
 }
 
 fn sample(reference: &Reference, k: usize, position: f64) -> Sample {
@@ -181,7 +191,8 @@ fn sample(reference: &Reference, k: usize, position: f64) -> Sample {
     }
 }
 
-fn quantise(x: f64, resolution: f64) -> f64 {
+/// What an encoder of this resolution shows; 0 for a perfect one.
+pub(crate) fn quantise(x: f64, resolution: f64) -> f64 {
     if resolution > 0.0 { (x / resolution).round() * resolution } else { x }
 }
 
@@ -271,5 +282,44 @@ mod tests {
         let model = table().with("quadratic-drag", &[]).unwrap();
         let run = closed_loop(&model, &reference, &mut wild, &Setup::default());
         assert!(matches!(run, Err(ClosedLoopError::Simulation(_))), "{run:?}");
+    }
+
+    #[test]
+    fn stick_is_noted_until_the_controller_overcomes_the_friction() {
+        let n = 400;
+        let velocity = vec![1e-3; n];
+        let position = (0..n).map(|k| k as f64 * 1e-6).collect();
+        let reference =
+            Reference { sample_time: 1e-3, position, velocity, acceleration: vec![0.0; n] };
+        let contact = table().with("presliding", &[("k_t", 1e7)]).unwrap();
+        for model in [table(), contact] {
+            let run = closed_loop(&model, &reference, &mut Pd::new(1e5, 0.0), &Setup::default());
+            let run = run.unwrap();
+            // 8 N at 1e5 N/m and 1 mm/s are 80 ms.
+            let free = run.stuck.iter().position(|stuck| *stuck < 0.5).unwrap();
+            assert!((78..=84).contains(&free), "{free}");
+            assert!(run.stuck[..free].iter().all(|stuck| *stuck > 0.5));
+            assert!(run.velocity[free + 5] > 0.0);
+        }
+    }
+
+    #[test]
+    fn watching_for_stick_changes_no_motion() {
+        for contact in [None, Some("presliding:static"), Some("presliding:lugre")] {
+            let model = contact.map_or_else(|| Ok(table()), |name| table().with(name, &[]));
+            let model = model.unwrap();
+            let motion = |mut plants: Plants| -> Vec<f64> {
+                plants.start(0, &Start::at(0.0, 0.0));
+                let force = |k: usize| 20.0 * (k as f64 * 0.02).sin();
+                (0..2000)
+                    .map(|k| {
+                        plants.step(&[5e-4], &[force(k)]);
+                        plants.position()[0]
+                    })
+                    .collect()
+            };
+            let plants = || Plants::uniform(&model, 1);
+            assert_eq!(motion(plants()), motion(plants().watched()), "{contact:?}");
+        }
     }
 }

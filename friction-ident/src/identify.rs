@@ -2,14 +2,20 @@
 //!
 //! The force along a measured motion is the quickest horizon and has a module of its own
 //! ([`crate::family`]). Here the model is simulated under the recorded command: over the whole
-//! recording ([`Horizon::FreeRun`]) or over short windows with fitted starts ([`Horizon::Windows`]).
+//! recording ([`Horizon::FreeRun`]) or over short windows with fitted starts ([`Horizon::Windows`]), or
+//! under a known controller that follows the recorded reference ([`Horizon::ClosedLoop`]).
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use aep_core::{
     Batch, Budget, ConfigError, Domain, Driver, Method, Outcome, Problem, RunError,
     Scale as SearchScale, Start as SearchStart,
 };
 use missing_physics::{Recording, RecordingError};
+use rayon::prelude::*;
 
+use crate::closed_loop::Pd;
 use crate::effects::{Role, Scale};
 use crate::model::{MASS, Model, ModelError};
 use crate::simulator::SimulationError;
@@ -17,9 +23,11 @@ use crate::windows::{WindowError, WindowOptions};
 
 mod free_run;
 mod intervals;
+mod refine;
 mod windowed;
 
-pub use intervals::{Interval, intervals};
+pub use intervals::{Interval, intervals, intervals_over};
+pub use refine::Refined;
 
 use free_run::FreeRun;
 use windowed::Windowed;
@@ -34,6 +42,16 @@ pub enum Horizon {
     },
     /// Windows with fitted starts.
     Windows(WindowOptions),
+    /// The whole of every segment under a known controller, which follows the channel `reference`. The
+    /// controller hides most of what a model lacks: all other horizons tell more.
+    ClosedLoop {
+        /// The controller, as it was.
+        controller: Pd,
+        /// Resolution of the encoder that the controller sees, m or rad; 0 for none.
+        encoder_resolution: f64,
+        /// Longest step of the simulation, s.
+        max_step: f64,
+    },
 }
 
 /// A parameter that is searched.
@@ -109,6 +127,8 @@ pub struct Identification<'a> {
     free: Vec<Free>,
     model: Model,
     comparison: Comparison<'a>,
+    stop: Option<&'a AtomicBool>,
+    until: Option<Instant>,
 }
 
 enum Comparison<'a> {
@@ -147,12 +167,36 @@ impl<'a> Identification<'a> {
             Horizon::FreeRun { max_step } => {
                 Comparison::FreeRun(FreeRun::new(model, recording, max_step)?)
             }
+            Horizon::ClosedLoop { controller, encoder_resolution, max_step } => {
+                let run = FreeRun::new(model, recording, max_step)?;
+                Comparison::FreeRun(run.under(recording, controller, encoder_resolution)?)
+            }
             Horizon::Windows(options) => {
                 Comparison::Windows(Windowed::new(model, recording, &options)?)
             }
         };
         let (values, free, model) = (model.values(), free.to_vec(), model.clone());
-        Ok(Self { domain, values, places, free, model, comparison })
+        Ok(Self { domain, values, places, free, model, comparison, stop: None, until: None })
+    }
+
+    /// The same, ended early once `flag` is set: what was found is kept.
+    #[must_use]
+    pub fn with_stop_flag(mut self, flag: &'a AtomicBool) -> Self {
+        self.stop = Some(flag);
+        self
+    }
+
+    /// The same, ended early `limit` from now: what was found is kept.
+    #[must_use]
+    pub fn with_time_limit(mut self, limit: Duration) -> Self {
+        self.until = Instant::now().checked_add(limit);
+        self
+    }
+
+    /// Whether it was told to end early.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.is_some_and(|flag| flag.load(Ordering::Relaxed))
+            || self.until.is_some_and(|until| Instant::now() >= until)
     }
 
     /// The model with the free parameters at `x`.
@@ -184,13 +228,21 @@ impl<'a> Identification<'a> {
         values
     }
 
+    /// Position errors (measured minus simulated) at every sample with the free parameters at `x`, m
+    /// or rad.
+    pub fn errors(&self, x: &[f64]) -> Vec<f64> {
+        self.residuals(&[x.to_vec()]).pop().unwrap_or_default()
+    }
+
     /// Position errors at every sample for each candidate, m or rad.
     fn residuals(&self, candidates: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let full: Vec<Vec<f64>> = candidates.iter().map(|x| self.full(x)).collect();
-        match &self.comparison {
-            Comparison::FreeRun(run) => run.residuals(&full),
-            Comparison::Windows(windows) => windows.residuals(&full),
-        }
+        full.par_chunks(self.batch_size())
+            .flat_map_iter(|full| match &self.comparison {
+                Comparison::FreeRun(run) => run.residuals(full),
+                Comparison::Windows(windows) => windows.residuals(full),
+            })
+            .collect()
     }
 
     /// Mean square of the recorded motion, and of what its encoder cannot resolve.
@@ -212,9 +264,33 @@ impl<'a> Identification<'a> {
         budget: Budget,
         seed: u64,
     ) -> Result<Outcome, IdentifyError> {
-        let mut algorithm =
-            method.start(&SearchStart::new(&self.domain, seed)).map_err(RunError::from)?;
-        Ok(Driver::new(budget).in_parallel().run(&mut *algorithm, self)?)
+        self.run_from(&[], method, budget, seed)
+    }
+
+    /// The same with `initial` points among the first individuals, moved into the bounds.
+    ///
+    /// # Errors
+    /// As [`Identification::run`].
+    pub fn run_from(
+        &self,
+        initial: &[Vec<f64>],
+        method: &dyn Method,
+        budget: Budget,
+        seed: u64,
+    ) -> Result<Outcome, IdentifyError> {
+        let within = |x: &Vec<f64>| -> Vec<f64> {
+            x.iter().zip(&self.free).map(|(x, free)| x.clamp(free.low, free.high)).collect()
+        };
+        let initial: Vec<Vec<f64>> = initial.iter().map(within).collect();
+        let start = SearchStart::new(&self.domain, seed).with_initial(&initial);
+        let mut algorithm = method.start(&start).map_err(RunError::from)?;
+        let left = self.until.map(|until| until.saturating_duration_since(Instant::now()));
+        let budget = left.into_iter().fold(budget, Budget::with_time);
+        let mut driver = Driver::new(budget).in_parallel();
+        if let Some(flag) = self.stop {
+            driver = driver.with_stop_flag(flag);
+        }
+        Ok(driver.run(&mut *algorithm, self)?)
     }
 }
 

@@ -18,6 +18,7 @@
 pub mod axis;
 pub mod challenge;
 pub mod closed_loop;
+pub mod control;
 pub mod driven;
 pub mod effects;
 pub mod family;
@@ -36,7 +37,7 @@ pub use challenge::Challenge;
 pub use closed_loop::{Controller, Pd, Setup, closed_loop};
 pub use driven::{Columns, MeasuredMotion, MotionError, columns_along, force_along};
 pub use effects::{Effect, Library};
-pub use identify::{Free, Horizon, Identification, intervals};
+pub use identify::{Free, Horizon, Identification, intervals, intervals_over};
 pub use model::{Model, ModelError};
 pub use reference::{Profile, Reference};
 pub use simulator::{Input, Plants, SimulationError, Start, Trajectory, simulate};

@@ -6,6 +6,9 @@ use crate::axis::{Axis, Quantity};
 use crate::effects::{Effect, Library, Parameter, Role, Slot, UnknownEffect};
 
 mod file;
+mod schema;
+
+pub use schema::{SCHEMA, schema};
 
 /// Why a model cannot be built, read or changed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

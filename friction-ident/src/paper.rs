@@ -4,9 +4,9 @@
 //! # How the printed numbers are read
 //! The printed mass of 0.034 "Kg" must be 0.034 kgf s^2/cm, that is 33.3 kg: 0.034 kg would give the
 //! table a time constant of 82 us under a controller that samples every 5 ms. Forces are in kgf,
-//! lengths in cm. The printed controller gains have no units; read per count and per sample they make
-//! a loop with 33 kg unstable, so gains are used that the same loop bears ([`PROPORTIONAL`],
-//! [`DERIVATIVE`]).
+//! lengths in cm. The printed controller gains have no units; read in kgf per count and per sample they
+//! make a loop that only the viscous friction keeps from being unstable ([`crate::control::paper`]), so
+//! gains are used that the same loop bears ([`PROPORTIONAL`], [`DERIVATIVE`]).
 
 use aep_core::{Budget, Method, Outcome};
 use missing_physics::{Channel, Hold, Recording};
@@ -17,10 +17,16 @@ use crate::identify::{Free, Horizon, Identification, IdentifyError};
 use crate::model::{Model, ModelError};
 use crate::reference::{Profile, Reference};
 
+mod figures;
+
+pub use figures::{GENERATIONS, SEARCH, is_found, refined, steady_friction, trials};
+
 /// Sampling time of the paper's controller, s.
 pub const SAMPLE_TIME: f64 = 5e-3;
 /// Resolution of the encoder, m.
 pub const ENCODER: f64 = 1e-6;
+/// Individuals of the paper's algorithms.
+pub const POPULATION: usize = 40;
 /// Samples of each of the four blocks of training data.
 pub const BLOCK: usize = 2000;
 /// Proportional gain, N/m.
@@ -28,7 +34,7 @@ pub const PROPORTIONAL: f64 = 1e5;
 /// Derivative gain, N s/m.
 pub const DERIVATIVE: f64 = 1.9e3;
 /// Newtons per kgf.
-const KGF: f64 = 9.806_65;
+pub const KGF: f64 = 9.806_65;
 
 /// A parameter that the paper identifies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,29 +51,46 @@ pub struct Printed {
     pub bounds: (f64, f64),
     /// Whether the search is on a logarithmic scale.
     pub logarithmic: bool,
+    /// SI value of the printed unit, as it is read here.
+    pub unit: f64,
+    /// Relative error up to which the parameter counts as found; none where such data cannot tell.
+    pub tolerance: Option<f64>,
+}
+
+impl Printed {
+    /// Whether `value` (SI) is the table's, as far as that can be known.
+    pub fn accepts(&self, value: f64) -> bool {
+        self.tolerance.is_none_or(|tolerance| (value / self.value - 1.0).abs() <= tolerance)
+    }
 }
 
 const fn printed(
     symbol: &'static str,
     address: &'static str,
     printed: &'static str,
-    value: f64,
+    (value, unit): (f64, f64),
     bounds: (f64, f64),
     logarithmic: bool,
+    tolerance: Option<f64>,
 ) -> Printed {
-    Printed { symbol, address, printed, value, bounds, logarithmic }
+    Printed { symbol, address, printed, value: value * unit, bounds, logarithmic, unit, tolerance }
 }
 
+/// kgf per cm, and what is counted in it.
+const PER_CM: f64 = KGF * 100.0;
+const CLOSE: Option<f64> = Some(0.02);
+
 /// The eight parameters of the paper.
+#[rustfmt::skip]
 pub const PARAMETERS: [Printed; 8] = [
-    printed("m_e", "mass", "0.034 Kg", 0.034 * KGF * 100.0, (10.0, 100.0), true),
-    printed("F_C", "coulomb.F_C", "0.4040 Kgf", 0.4040 * KGF, (0.0, 10.0), false),
-    printed("F_v", "viscous.F_v", "0.4244 Kgf s/cm", 0.4244 * KGF * 100.0, (0.0, 2000.0), false),
-    printed("F_s,inf", "stribeck.dF", "0.4260 Kgf", 0.4260 * KGF, (0.0, 10.0), false),
-    printed("gamma", "rising-static-friction:bond.gamma", "0.0089 msec", 8.9e-6, (1e-6, 1.0), true),
-    printed("tau_L", "frictional-memory.tau_L", "25 msec", 0.025, (2e-3, 0.1), true),
-    printed("x'_s", "stribeck.v_s", "0.0001 cm/sec", 1e-6, (1e-7, 1e-3), true),
-    printed("k_t", "presliding:static.k_t", "7173 Kgf/cm", 7173.0 * KGF * 100.0, (1e6, 5e7), true),
+    printed("m_e", "mass", "0.034 Kg", (0.034, PER_CM), (10.0, 100.0), true, CLOSE),
+    printed("F_C", "coulomb.F_C", "0.4040 Kgf", (0.4040, KGF), (0.0, 10.0), false, CLOSE),
+    printed("F_v", "viscous.F_v", "0.4244 Kgf s/cm", (0.4244, PER_CM), (0.0, 2000.0), false, CLOSE),
+    printed("F_s,inf", "stribeck.dF", "0.4260 Kgf", (0.4260, KGF), (0.0, 10.0), false, CLOSE),
+    printed("gamma", "rising-static-friction:bond.gamma", "0.0089 msec", (0.0089, 1e-3), (1e-6, 1.0), true, None),
+    printed("tau_L", "frictional-memory.tau_L", "25 msec", (25.0, 1e-3), (2e-3, 0.1), true, Some(0.1)),
+    printed("x'_s", "stribeck.v_s", "0.0001 cm/sec", (0.0001, 1e-2), (1e-7, 1e-3), true, None),
+    printed("k_t", "presliding:static.k_t", "7173 Kgf/cm", (7173.0, PER_CM), (1e6, 5e7), true, CLOSE),
 ];
 
 /// The table: the seven-parameter friction model with the identified parameters.
@@ -126,12 +149,25 @@ fn fill(profile: Profile) -> Reference {
 /// # Errors
 /// The simulation fails.
 pub fn training_data(table: &Model, max_step: f64) -> Result<Recording, ClosedLoopError> {
+    training_data_with_noise(table, max_step, 0.0)
+}
+
+/// The same with noise of this standard deviation (N) on the recorded force.
+///
+/// # Errors
+/// The simulation fails.
+pub fn training_data_with_noise(
+    table: &Model,
+    max_step: f64,
+    force_noise: f64,
+) -> Result<Recording, ClosedLoopError> {
     let (mut force, mut position, mut reference) = (Vec::new(), Vec::new(), Vec::new());
-    for block in references() {
-        let setup = Setup { encoder_resolution: ENCODER, max_step, ..Setup::default() };
+    for (seed, block) in (1..).zip(references()) {
+        let encoder_resolution = ENCODER;
+        let setup = Setup { encoder_resolution, force_noise, max_step, seed, ..Setup::default() };
         let mut pd = Pd::new(PROPORTIONAL, DERIVATIVE);
         let run = closed_loop(table, &block, &mut pd, &setup)?;
-        force.extend_from_slice(&run.command);
+        force.extend_from_slice(run.recording.require("force")?);
         position.extend_from_slice(run.recording.require("position")?);
         reference.extend_from_slice(&block.position);
     }

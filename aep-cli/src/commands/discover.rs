@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use missing_physics::data_check::check;
+use missing_physics::report::Verdict;
 use missing_physics::{Discovery, discover};
 
 use crate::app::Global;
 use crate::args::{EffectNames, MappingArgs, OutputArgs, RunArgs, words};
+use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
@@ -37,6 +39,9 @@ pub struct Args {
     /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them
     #[arg(long, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
+    /// Where the data cannot tell effects apart: write a motion that would (time and position)
+    #[arg(long, value_name = "FILE.csv")]
+    experiment: Option<PathBuf>,
     #[command(flatten)]
     results: OutputArgs,
     #[command(flatten)]
@@ -52,6 +57,7 @@ Examples:
   aep discover run.csv --base coulomb,viscous --json -   for scripts
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
+  aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
   aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
 
 /// Runs the command.
@@ -87,6 +93,14 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         let name = others.recording.name();
         more.push(("confirmation", serde_json::json!({ "recording": name, "rungs": rungs })));
     }
+    let mut proposal = Proposal::default();
+    if let Some(path) = &args.experiment {
+        progress.say("looking for an experiment that tells them apart");
+        let rivals = discovery.ambiguous.first().map_or(&[][..], |choice| &choice.effects);
+        let last = discovery.ladder.last().map_or(&[][..], |rung| &rung.effects);
+        proposal = propose(&family, last, rivals, path, args.run.seed)?;
+        more.append(&mut proposal.more);
+    }
     drop(progress);
     let report =
         Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more };
@@ -97,9 +111,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if quiet {
         return Ok(());
     }
-    let next = if args.data.is_empty() { crate::example::next() } else { next(args) };
+    let next = if args.data.is_empty() { crate::example::next() } else { next(args, &discovery) };
     let files = if files.is_empty() { files } else { format!("\n{files}") };
-    output::print(&(story(&discovery) + &confirmed + &files + &next))
+    output::print(&(story(&discovery) + &confirmed + &proposal.text + &files + &next))
 }
 
 fn save_model(
@@ -153,7 +167,11 @@ fn story(discovery: &Discovery) -> String {
     text + &output::verdict(discovery)
 }
 
-fn next(args: &Args) -> String {
+fn next(args: &Args, discovery: &Discovery) -> String {
+    if discovery.verdict == Verdict::Ambiguous && args.experiment.is_none() {
+        let command = format!("aep discover {} --experiment next.csv", words(&args.data));
+        return format!("\n{}\n", output::dim(&format!("What to run next: {command}")));
+    }
     if args.results.html.is_some() {
         return String::new();
     }

@@ -2,17 +2,17 @@
 
 use std::fmt::Write;
 
-use friction_ident::{Axis, Library};
+use friction_ident::Axis;
 use missing_physics::quantity::number;
 
 use crate::app::Global;
-use crate::args::known;
+use crate::args::{known, library};
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, bold, dim, heading};
 
 /// List the effects a model can have, with equations and parameters
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  aep effects             all of them, one line each\n  aep effects stribeck    everything about one")]
+#[command(after_help = "Examples:\n  aep effects             all of them, one line each\n  aep effects stribeck    everything about one\n  aep effects --effects-file examples/cogging.toml    with one of your own")]
 pub struct Args {
     /// Say everything about this one
     #[arg(value_name = "EFFECT")]
@@ -35,7 +35,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 fn list() -> String {
     let mut table =
         Table::new(&[("effect", Align::Left), ("what it is", Align::Left), ("adds to the model", Align::Left)]);
-    for effect in Library::builtin().effects() {
+    for effect in library().effects() {
         let about = effect.about();
         table.row([about.name.to_owned(), about.title.to_owned(), about.equation.to_owned()]);
     }
@@ -44,7 +44,7 @@ fn list() -> String {
 }
 
 fn about(name: &str, axis: Axis) -> Result<String, Failure> {
-    let library = Library::builtin();
+    let library = library();
     let effect = library.find(name)?;
     let about = effect.about();
     let mut text = heading(&format!("{}: {}", about.name, about.title));

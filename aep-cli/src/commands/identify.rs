@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
+use friction_ident::family::FrictionFamily;
+use missing_physics::Recording;
 use missing_physics::data_check::check;
 
 use crate::app::Global;
-use crate::args::{DataArgs, EffectNames, OutputArgs};
+use crate::args::{Compared, DataArgs, EffectNames, OutputArgs, TimeArgs};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
@@ -27,6 +29,11 @@ pub struct Args {
     /// Optimizer of the shape parameters
     #[arg(long, default_value = "aep", value_parser = PossibleValuesParser::new(ALGORITHMS.iter().map(|a| a.0)))]
     algorithm: String,
+    /// What the model is compared with: the force along the measured motion, or its own motion
+    #[arg(long, value_enum, default_value_t = Compared::Force)]
+    horizon: Compared,
+    #[command(flatten)]
+    time: TimeArgs,
     /// Seed of every random choice
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -40,10 +47,44 @@ pub struct Args {
     results: OutputArgs,
 }
 
+/// The identification by simulation.
+fn in_time(
+    args: &Args,
+    recording: &Recording,
+    family: &FrictionFamily,
+    effects: &[String],
+    progress: Progress,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let found = steps::identify_in_time(
+        recording,
+        family,
+        effects,
+        &args.time.task(args.horizon)?,
+        (&args.algorithm, args.seed),
+    )?;
+    drop(progress);
+    let mut files = String::new();
+    if let Some(path) = &args.results.json {
+        output::save_json(path, &found.json())?;
+        files += &written("results", path);
+    }
+    if let Some(path) = &args.output {
+        output::save(path, &(found.model.to_json()? + "\n"))?;
+        files += &written("model", path);
+    }
+    if quiet {
+        return Ok(());
+    }
+    let title = format!("{} by simulation, {}", effects.join(" + "), args.horizon.name());
+    output::print(&(heading(&title) + &found.text() + &files))
+}
+
 const EXAMPLES: &str = "\
 Examples:
   aep identify run.csv --effects coulomb,viscous,offset -o model.json
-  aep identify run.csv --effects coulomb,viscous,stribeck --algorithm meta-ep";
+  aep identify run.csv --effects coulomb,viscous,stribeck --algorithm meta-ep
+  aep identify run.csv --effects coulomb,viscous --horizon windows --time-limit 30 -o model.json";
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
@@ -55,6 +96,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let family = steps::family(&loaded.recording, args.bandwidth)?;
     progress.say(format!("identifying {}", effects.join(" + ")));
     let method = steps::method(&args.algorithm)?;
+    if args.horizon != Compared::Force {
+        return in_time(args, &loaded.recording, &family, &effects, progress, quiet);
+    }
     let (fit, evaluations) = steps::identify(&family, &effects, &*method, args.seed)?;
     let rung = steps::rung(&family, &fit, None);
     let model = steps::model(&family, &rung)?;

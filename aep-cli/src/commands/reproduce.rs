@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use aep_problems::paper::Claim;
 
-use super::reproduce_optimizers;
+use super::{reproduce_control, reproduce_optimizers, reproduce_plant};
 use crate::app::Global;
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading};
@@ -66,7 +66,8 @@ pub struct Made {
 }
 
 /// All figures; a new one is one entry in one of these lists.
-const FIGURES: &[&[Figure]] = &[reproduce_optimizers::FIGURES];
+const FIGURES: &[&[Figure]] =
+    &[reproduce_optimizers::FIGURES, reproduce_plant::FIGURES, reproduce_control::FIGURES];
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {

@@ -7,11 +7,15 @@ use missing_physics::suggest;
 
 use crate::app::Global;
 use crate::args::{DataArgs, OutputArgs, RunArgs};
+use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::steps;
+
+/// Most effects that one experiment is to tell apart.
+const RIVALS: usize = 3;
 
 /// Suggest the effect that a model lacks, without adding it
 ///
@@ -28,6 +32,9 @@ pub struct Args {
     /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
+    /// Where several effects are likely: write a motion that tells them apart (time and position)
+    #[arg(long, value_name = "FILE.csv")]
+    experiment: Option<PathBuf>,
     #[command(flatten)]
     results: OutputArgs,
     #[command(flatten)]
@@ -52,16 +59,26 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     steps::same_axis(&family, &model)?;
     progress.say("fitting the model");
     let discovery = suggest(&family, &settings, &mut progress)?;
+    let candidates = discovery.ranking.first().map_or(&[][..], Vec::as_slice);
+    let likely = candidates.iter().filter(|c| c.p_value <= settings.alpha && c.gain > 0.0);
+    let mut proposal = Proposal::default();
+    if let Some(path) = &args.experiment {
+        progress.say("looking for an experiment that tells them apart");
+        let rivals: Vec<String> =
+            likely.clone().take(RIVALS).map(|candidate| candidate.effect.clone()).collect();
+        proposal = propose(&family, &settings.base, &rivals, path, args.run.seed)?;
+    }
+    let mut likely = likely;
+    let likely = likely.next();
     drop(progress);
     let data = check(&loaded.recording);
+    let more = proposal.more;
     let report =
-        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
+        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more };
     let files = report.save(&args.results)?;
     if quiet {
         return Ok(());
     }
-    let candidates = discovery.ranking.first().map_or(&[][..], Vec::as_slice);
-    let likely = candidates.iter().find(|c| c.p_value <= settings.alpha && c.gain > 0.0);
     let next = match likely {
         Some(best) => format!(
             "Try it: aep extend {} --model {} --add {} -o better.json\n",
@@ -77,6 +94,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Which effect is missing")
         + &output::ranking(candidates, Columns::All)
+        + &proposal.text
         + "\n"
         + &files
         + &next;

@@ -129,6 +129,34 @@ fn the_published_axis_gives_the_published_error_and_the_known_asymmetry() {
     assert!(error(1) < 0.0326, "{}", error(1));
 }
 
+#[test]
+fn an_experiment_is_a_motion_that_the_axis_can_follow() {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 1, "c");
+    desk.aep("identify c/recording.csv -q --effects coulomb,viscous,offset -o base.json").done();
+    let run = desk.aep(
+        "suggest c/recording.csv --model base.json --experiment next.csv --json out.json --seed 3",
+    );
+    assert!(run.done().contains("An experiment to tell stribeck"), "{}", run.out);
+    let experiment = &desk.json("out.json")["experiment"];
+    assert_eq!(experiment["effects"][0], "stribeck");
+    assert!(experiment["predicted"]["deviations"].as_f64().unwrap() > 0.0);
+    let csv = desk.read("next.csv");
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("time_s,position_m"));
+    let rows = lines.count() as f64;
+    assert!((rows * 1e-3 - experiment["duration_s"].as_f64().unwrap()).abs() < 2e-3);
+}
+
+#[test]
+fn where_nothing_is_ambiguous_no_experiment_is_written() {
+    let desk = Desk::new();
+    let run = desk.aep("discover --experiment next.csv --json out.json");
+    assert!(run.done().contains("No experiment is written"));
+    assert!(!desk.path("next.csv").exists());
+    assert!(desk.json("out.json")["experiment"].is_null());
+}
+
 /// Files of the XL330 recorded at one gain, as words of a command.
 fn servo(gain: &str) -> Option<String> {
     let runs = ["lift_and_drop", "sin_sin", "sin_time_square", "up_and_down"];

@@ -2,8 +2,18 @@
 
 use crate::harness::Desk;
 
-const COMMANDS: [&str; 8] =
-    ["discover", "identify", "compare", "suggest", "extend", "simulate", "challenge", "effects"];
+const COMMANDS: [&str; 10] = [
+    "discover",
+    "identify",
+    "compare",
+    "suggest",
+    "extend",
+    "simulate",
+    "challenge",
+    "effects",
+    "control",
+    "export",
+];
 
 #[test]
 fn every_command_explains_itself() {

@@ -1,9 +1,11 @@
 //! The command line as users meet it: what they type, what they read, which files they get.
 
 mod bad_input;
+mod control;
 mod discovery;
 mod files;
 mod harness;
 mod help;
 mod loop_by_hand;
 mod optimizers;
+mod plant;

@@ -68,6 +68,6 @@ pub struct Motion<'a> {
 pub struct Smooth<'a> {
     /// To be added to: resisting force, N or N m.
     pub force: &'a mut [f64],
-    /// To be added to: its slope against velocity where that is positive.
+    /// To be added to: its slope against velocity where that is positive, from rest or at the velocity.
     pub damping: &'a mut [f64],
 }

@@ -125,9 +125,17 @@ impl Element for Presliding {
         state: &mut [f64],
         velocity: &mut [f64],
     ) -> bool {
-        let hold = self.hold(b.level, b.breakaway);
         let (held, slides) = state.split_at_mut(b.level.len());
-        solve(p.get(0), b.duration, b.inertia, b.push, b.level, hold, held, slides, velocity);
+        let (stiffness, r, inertia, push) = (p.get(0), b.duration, b.inertia, b.push);
+        match self.breakaway {
+            Breakaway::Kinetic => {
+                solve(stiffness, r, inertia, push, b.level, held, slides, velocity);
+            }
+            Breakaway::Static => {
+                let hold = b.breakaway;
+                solve_static(stiffness, r, inertia, push, b.level, hold, held, slides, velocity);
+            }
+        }
         true
     }
 
@@ -150,6 +158,20 @@ impl Element for Presliding {
 fn at_start(held: f64, slides: f64, level: f64, hold: f64) -> f64 {
     let cap = if slides > 0.0 { level } else { hold.max(level) };
     limited(held, cap)
+}
+
+/// Mean force over a step from `start` to `end`. Where the contact falls from what it holds to the
+/// level, the fall has its place in time: taken for the whole step it would cost an order of accuracy.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn mean(start: f64, trial: f64, end: f64, breaks: bool, slides: f64, level: f64, hold: f64) -> f64 {
+    let goes_on = slides > 0.0 && trial * start >= start * start;
+    let falls = breaks && !goes_on && hold > level;
+    // Share of the step until then; the trial grows evenly with time.
+    let top = hold.copysign(trial);
+    let until = limited((top - start) / (trial - start), 1.0).max(0.0);
+    let fallen = until * 0.5 * (start + top) + (1.0 - until) * end;
+    if falls { fallen } else { 0.5 * (start + end) }
 }
 
 /// Contact force at the end of a step that is elastic at first, and whether it slides then.
@@ -182,7 +204,7 @@ vectorised! {
             let start = at_start(held[i], slides[i], level[i], hold[i]);
             let trial = start + stiffness[i] * moved[i];
             let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
-            force[i] += 0.5 * (start + end);
+            force[i] += mean(start, trial, end, breaks, slides[i], level[i], hold[i]);
             slope[i] += if breaks && moved[i] != 0.0 { 0.0 } else { 0.5 * stiffness[i] };
         }
     }
@@ -213,6 +235,37 @@ vectorised! {
         inertia: &[f64],
         push: &[f64],
         level: &[f64],
+        held: &mut [f64],
+        slides: &mut [f64],
+        velocity: &mut [f64],
+    ) {
+        let n = held.len();
+        let (stiffness, duration, inertia) = (&stiffness[..n], &duration[..n], &inertia[..n]);
+        let (push, level) = (&push[..n], &level[..n]);
+        let (slides, velocity) = (&mut slides[..n], &mut velocity[..n]);
+        for i in 0..n {
+            let r = duration[i];
+            let start = limited(held[i], level[i]);
+            let bend = stiffness[i] * r;
+            // The elastic trial, all times its inertia: one division serves both outcomes.
+            let (free, whole) = (push[i] - r * start, inertia[i] + 0.5 * bend * r);
+            let trial = start * whole + bend * free;
+            let breaks = trial.abs() > level[i] * whole;
+            let slid = level[i].copysign(trial);
+            let sliding = push[i] - 0.5 * r * (start + slid);
+            let mean = if breaks { sliding } else { free } / if breaks { inertia[i] } else { whole };
+            held[i] = if breaks { slid } else { start + bend * mean };
+            slides[i] = if breaks { 1.0 } else { 0.0 };
+            velocity[i] = mean;
+        }
+    }
+
+    fn solve_static(
+        stiffness: &[f64],
+        duration: &[f64],
+        inertia: &[f64],
+        push: &[f64],
+        level: &[f64],
         hold: &[f64],
         held: &mut [f64],
         slides: &mut [f64],
@@ -226,17 +279,15 @@ vectorised! {
             let r = duration[i];
             let start = at_start(held[i], slides[i], level[i], hold[i]);
             let bend = stiffness[i] * r;
-            // The elastic trial, all times its inertia: one division serves both outcomes.
             let (free, whole) = (push[i] - r * start, inertia[i] + 0.5 * bend * r);
-            let (begin, trial) = (start * whole, start * whole + bend * free);
-            let (limit, most) = (level[i] * whole, hold[i] * whole);
-            let (end, breaks) = at_end(begin, trial, slides[i], limit, most);
-            let slid = level[i].copysign(end);
-            let sliding = push[i] - 0.5 * r * (start + slid);
-            let mean = if breaks { sliding } else { free } / if breaks { inertia[i] } else { whole };
-            held[i] = if breaks { slid } else { start + bend * mean };
+            let elastic = free / whole;
+            let trial = start + bend * elastic;
+            let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
+            let broken = mean(start, trial, end, breaks, slides[i], level[i], hold[i]);
+            let sliding = (push[i] - r * broken) / inertia[i];
+            held[i] = end;
             slides[i] = if breaks { 1.0 } else { 0.0 };
-            velocity[i] = mean;
+            velocity[i] = if breaks { sliding } else { elastic };
         }
     }
 }

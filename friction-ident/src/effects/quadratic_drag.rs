@@ -35,7 +35,8 @@ vectorised! {
         for i in 0..n {
             let speed = velocity[i].abs();
             force[i] += drag[i] * velocity[i] * speed;
-            slope[i] += 2.0 * drag[i] * speed;
+            // The secant through rest, not the tangent: it brakes however far off the prediction is.
+            slope[i] += drag[i] * speed;
         }
     }
 }
@@ -47,7 +48,7 @@ mod tests {
 
     #[test]
     fn it_opposes_the_motion_with_the_square_of_the_speed() {
-        assert_eq!(smooth(&QuadraticDrag, &[100.0], Point::at(0.0, 0.5)), (25.0, 100.0));
-        assert_eq!(smooth(&QuadraticDrag, &[100.0], Point::at(0.0, -0.5)), (-25.0, 100.0));
+        assert_eq!(smooth(&QuadraticDrag, &[100.0], Point::at(0.0, 0.5)), (25.0, 50.0));
+        assert_eq!(smooth(&QuadraticDrag, &[100.0], Point::at(0.0, -0.5)), (-25.0, 50.0));
     }
 }

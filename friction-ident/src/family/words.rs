@@ -46,13 +46,13 @@ pub fn describe(term: &Term, values: &[f64]) -> String {
 }
 
 /// Pairs (or more) of effects that look alike in ordinary motion, and what tells them apart.
-const APART: [(&[&str], &str); 7] = [
+const APART: [(&[&str], &str); 9] = [
     (
         &["offset", "asymmetry"],
         "break away from rest in both directions: an offset shifts both breakaway forces the same way, asymmetry makes them differ in size; add constant speeds over the whole range",
     ),
     (
-        &["viscous", "quadratic-drag"],
+        &["viscous", "quadratic-drag", "shear-thinning"],
         "run constant speeds over a factor of ten, up to the highest the axis allows",
     ),
     (
@@ -66,6 +66,14 @@ const APART: [(&[&str], &str); 7] = [
     (
         &["actuator-lag", "input-delay"],
         "add a fast sine sweep (to a third of the sampling frequency): a delay turns the phase in proportion to frequency, a lag also lowers the gain",
+    ),
+    (
+        &["load-friction", "position-friction"],
+        "cover the whole stroke in both directions with two different loads, or at two accelerations: what depends on the position stays where it is",
+    ),
+    (
+        &["offset", "spring", "gravity-pendulum"],
+        "cover the whole stroke slowly in both directions: an offset is the same everywhere",
     ),
     (
         &["spring", "position-friction", "ripple", "gravity-pendulum"],

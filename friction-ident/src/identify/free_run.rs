@@ -1,22 +1,65 @@
-//! Whole segments of a recording, all candidates in lockstep.
+//! Whole segments of a recording, all candidates in lockstep: under the recorded command, or under the
+//! command of a controller that follows the recorded reference.
 
 use std::ops::Range;
 
 use missing_physics::Recording;
 
 use super::IdentifyError;
+use crate::closed_loop::{Controller, Pd, Sample, quantise};
 use crate::model::Model;
+use crate::signal::derivative;
 use crate::simulator::{Plants, Start};
 use crate::windows::{Data, WindowOptions};
 
 /// Lanes of one batch: enough to hide the calls, few enough for the first-level cache.
 const LANES: usize = 96;
 
-/// Free runs of one recording.
+/// A controller and what it follows.
+struct Loop<'a> {
+    controller: Pd,
+    /// Resolution of the encoder that it sees, m or rad; 0 for none.
+    resolution: f64,
+    reference: &'a [f64],
+    velocity: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+impl<'a> Loop<'a> {
+    fn new(
+        recording: &'a Recording,
+        controller: Pd,
+        resolution: f64,
+    ) -> Result<Self, IdentifyError> {
+        let (time, reference) = (recording.time(), recording.require("reference")?);
+        let (mut velocity, mut acceleration) = (Vec::new(), Vec::new());
+        for segment in recording.segments() {
+            let time = &time[segment.clone()];
+            let speed = derivative(time, &reference[segment.clone()]);
+            acceleration.extend(derivative(time, &speed));
+            velocity.extend(speed);
+        }
+        Ok(Self { controller, resolution, reference, velocity, acceleration })
+    }
+
+    fn sample(&self, k: usize, time: f64, position: f64) -> Sample {
+        Sample {
+            time,
+            reference: self.reference[k],
+            reference_velocity: self.velocity[k],
+            reference_acceleration: self.acceleration[k],
+            position: quantise(position, self.resolution),
+        }
+    }
+}
+
+/// Runs of one recording from its first samples.
 pub(super) struct FreeRun<'a> {
     data: Data<'a>,
     model: Model,
     starts: Vec<Start>,
+    /// None where the recorded command acts.
+    under_control: Option<Loop<'a>>,
     /// Longest segment.
     longest: usize,
     /// Mean square of the motion about its mean, m^2 or rad^2.
@@ -36,7 +79,18 @@ impl<'a> FreeRun<'a> {
         let starts = (0..data.segments.len()).map(|s| start(&data, s)).collect();
         let longest = data.segments.iter().map(Range::len).max().unwrap_or(0);
         let (scale, noise) = (mean_square(&data), data.noise);
-        Ok(Self { data, model: model.clone(), starts, longest, scale, noise })
+        Ok(Self { data, model: model.clone(), starts, under_control: None, longest, scale, noise })
+    }
+
+    /// The same with the command of `controller`, which follows the recorded reference.
+    pub fn under(
+        mut self,
+        recording: &'a Recording,
+        controller: Pd,
+        resolution: f64,
+    ) -> Result<Self, IdentifyError> {
+        self.under_control = Some(Loop::new(recording, controller, resolution)?);
+        Ok(self)
     }
 
     /// Candidates that go into one batch.
@@ -95,6 +149,11 @@ impl<'a> FreeRun<'a> {
         }
         let (mut duration, mut command) = (vec![0.0; lanes], vec![0.0; lanes]);
         let mut errors = vec![0.0; count];
+        let mut controllers: Vec<Pd> = match &self.under_control {
+            Some(control) => vec![control.controller; lanes],
+            None => Vec::new(),
+        };
+        let mut held = vec![0.0; controllers.len()];
         for k in 0..self.longest {
             for (s, segment) in segments.iter().enumerate().filter(|(_, s)| k < s.len()) {
                 let measured = self.data.position[segment.start + k];
@@ -102,13 +161,23 @@ impl<'a> FreeRun<'a> {
                 errors.iter_mut().zip(simulated).for_each(|(e, x)| *e = measured - x);
                 each(segment.start + k, &errors);
             }
+            if let Some(control) = &self.under_control {
+                for (s, segment) in segments.iter().enumerate().filter(|(_, s)| k < s.len()) {
+                    let sample = segment.start + k;
+                    for i in s * count..(s + 1) * count {
+                        let (time, x) = (self.data.time[sample], plants.position()[i]);
+                        held[i] = controllers[i].command(&control.sample(sample, time, x));
+                    }
+                }
+            }
             for step in 0..self.data.steps {
                 for (s, segment) in segments.iter().enumerate() {
                     let (length, force) = self.data.step(segment, k, step);
                     duration[s * count..(s + 1) * count].fill(length);
                     command[s * count..(s + 1) * count].fill(force);
                 }
-                plants.step(&duration, &command);
+                let acting = if held.is_empty() { &command } else { &held };
+                plants.step(&duration, acting);
             }
         }
     }

@@ -3,6 +3,8 @@ use missing_physics::{Channel, Hold};
 
 use super::*;
 use crate::axis::Axis;
+use crate::closed_loop::{Setup, closed_loop};
+use crate::reference::Reference;
 use crate::simulator::{Input, Start, simulate};
 
 fn table() -> Model {
@@ -55,6 +57,44 @@ fn a_free_run_gives_the_parameters_back() {
 fn windows_give_the_parameters_back() {
     let options = WindowOptions { max_step: 2e-3, ..WindowOptions::new(0.2) };
     assert_found(Horizon::Windows(options), 2e-3);
+}
+
+#[test]
+fn a_closed_loop_under_the_known_controller_gives_the_parameters_back() {
+    let pd = Pd::new(2e4, 1e3).with_smoothing(0.5);
+    let time = || (0..2000).map(|k| 2e-3 * f64::from(k));
+    let swing = |t: f64, w: f64, amplitude: f64| amplitude * (1.0 - (w * t).cos());
+    let reference = Reference {
+        sample_time: 2e-3,
+        position: time().map(|t| swing(t, 3.0, 0.02) + swing(t, 25.0, 0.001)).collect(),
+        velocity: time().map(|t| 0.06 * (3.0 * t).sin() + 0.025 * (25.0 * t).sin()).collect(),
+        acceleration: vec![0.0; 2000],
+    };
+    let setup = Setup { encoder_resolution: 0.0, max_step: 2e-3, ..Setup::default() };
+    let run = closed_loop(&table(), &reference, &mut pd.clone(), &setup).unwrap();
+    let horizon = Horizon::ClosedLoop { controller: pd, encoder_resolution: 0.0, max_step: 2e-3 };
+    let task = Identification::new(&table(), &run.recording, &free(), horizon).unwrap();
+    let found = task.run(&Aep::practical().with_population(24), Budget::generations(60), 3);
+    let found = task.refine(&found.unwrap().position);
+    for (x, truth) in found.position.iter().zip([33.0, 8.0, 200.0]) {
+        assert!((x / truth - 1.0).abs() < 0.02, "{found:?}");
+    }
+    let data = recording(&table(), 1e-6);
+    let lacking = Identification::new(&table(), &data, &free(), horizon);
+    assert!(matches!(lacking, Err(IdentifyError::Recording(_))));
+}
+
+#[test]
+fn who_is_told_to_stop_keeps_what_was_found() {
+    let data = recording(&table(), 1e-6);
+    let horizon = Horizon::FreeRun { max_step: 2e-3 };
+    let stop = AtomicBool::new(true);
+    let task = Identification::new(&table(), &data, &free(), horizon).unwrap();
+    let task = task.with_stop_flag(&stop);
+    let aep = Aep::practical().with_population(24);
+    let found = task.run_from(&[task.start()], &aep, Budget::generations(120), 3).unwrap();
+    assert!(found.generations <= 1, "{found:?}");
+    assert_eq!(task.refine_around(&found.position).position, found.position);
 }
 
 #[test]

@@ -8,6 +8,9 @@ use crate::effects::Effect;
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
+    /// The JSON schema that the file names, if any.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    schema: Option<String>,
     axis: Axis,
     /// kg, or kg m^2 on a rotary axis.
     #[serde(alias = "inertia")]
@@ -61,7 +64,7 @@ impl Model {
             let parameters = names.zip(term.values.iter().copied()).collect();
             FileTerm { effect: term.name().to_owned(), parameters }
         });
-        File { axis: self.axis, mass: self.mass, effects: effects.collect() }
+        File { schema: None, axis: self.axis, mass: self.mass, effects: effects.collect() }
     }
 }
 

@@ -181,6 +181,19 @@ impl Plants {
         &self.velocity
     }
 
+    /// Keeps count of stick and slip, see [`Plants::sliding`], also where no effect depends on it.
+    #[must_use]
+    pub fn watched(mut self) -> Self {
+        self.reads_dwell = true;
+        self
+    }
+
+    /// 1 where a lane slides at the end of the last step, 0 where its friction holds; for plants that
+    /// are [`Plants::watched`].
+    pub fn sliding(&self) -> &[f64] {
+        &self.sliding
+    }
+
     /// Mean force of the drive on the mass in the last step, N or N m.
     pub fn drive_force(&self) -> &[f64] {
         &self.scratch.drive

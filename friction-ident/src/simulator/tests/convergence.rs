@@ -50,6 +50,29 @@ fn halving_the_step_divides_the_error_by_four_through_stops_and_reversals() {
 }
 
 #[test]
+fn a_contact_that_breaks_falls_at_its_time_within_the_step() {
+    let stribeck: (&str, &[(&str, f64)]) = ("stribeck", &[("dF", 6.0), ("v_s", 1e-3)]);
+    let contact: (&str, &[(&str, f64)]) = ("presliding:static", &[("k_t", 2e4)]);
+    let base = [("coulomb", &[("F_C", 8.0)] as &[_]), ("viscous", &[("F_v", 100.0)])];
+    let model = plant(5.0, &[base[0], base[1], stribeck, contact]);
+    // One break-away: a ramp that ends above the force at which the contact breaks.
+    let after = |step: f64| {
+        let time = times(3, 0.1);
+        let input = Input::new(&time, &[0.0, 10.0, 20.0], Hold::Sampled).with_max_step(step);
+        simulate(&model, &input, &Start::at(0.0, 0.0)).unwrap().position[2]
+    };
+    let exact = after(1e-6);
+    // The time of the fall hits the grid of steps at random: mean over spans of steps.
+    let error = |coarse: f64| {
+        let steps = (0..20).map(|k| coarse * (1.0 + 0.02 * f64::from(k)));
+        steps.map(|step| (after(step) - exact).abs()).sum::<f64>() / 20.0
+    };
+    let (coarse, fine) = (error(4e-3), error(2.5e-4));
+    let order = (coarse / fine).log2() / 4.0;
+    assert!(order > 1.7, "{coarse:.2e} -> {fine:.2e}, order {order:.2}");
+}
+
+#[test]
 fn the_work_of_the_drive_is_kinetic_energy_and_dissipation() {
     let model = plant(5.0, &[("coulomb", &[("F_C", 8.0)]), ("viscous", &[("F_v", 100.0)])]);
     let time = times(4000, 5e-4);

@@ -87,3 +87,15 @@ proptest! {
         prop_assert_eq!(alone.velocity()[0].to_bits(), batch.velocity()[4].to_bits());
     }
 }
+
+#[test]
+fn a_prediction_that_is_far_off_supplies_no_energy() {
+    // A contact that swings faster than the steps, with drag taken at the predicted velocity.
+    let hump: (&str, &[(&str, f64)]) = ("stribeck", &[("dF", 57.3), ("v_s", 0.012)]);
+    let contact: (&str, &[(&str, f64)]) = ("presliding", &[("k_t", 7.4e7)]);
+    let drag: (&str, &[(&str, f64)]) = ("quadratic-drag", &[("c", 7105.0)]);
+    let model = plant(0.5, &[("coulomb", &[("F_C", 426.0)]), hump, contact, drag]);
+    let start = Start { used: 0.0, ..Start::at(0.0, 0.030_55) };
+    let out = run(&model, &times(400, 1e-3), start, |_| 0.0);
+    assert!(out.velocity.iter().all(|v| v.abs() <= 0.030_55 * (1.0 + 1e-9)));
+}

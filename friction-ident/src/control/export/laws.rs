@@ -1,0 +1,81 @@
+//! The laws of the effects in C, statement by statement as the hooks compute them.
+
+use crate::model::Term;
+
+/// What a term adds, in C99; `{name}` stands for the constant of the parameter `name`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Law {
+    /// Statements that add to `force`, of `x` (position) and `v` (velocity).
+    pub smooth: &'static str,
+    /// Statements that add to `level`, of `x`, `s` (direction), `w` (the velocity that the level
+    /// follows), `dwell` and `bond`.
+    pub level: &'static str,
+    /// Expression of `w`: the share that is left of the static hump.
+    pub hump: &'static str,
+}
+
+const NONE: Law = Law { smooth: "", level: "", hump: "" };
+
+/// The law of a term; none where there is none in C.
+pub(super) fn law(term: &Term) -> Option<Law> {
+    Some(match term.name() {
+        "coulomb" => Law { level: "level += {F_C};", ..NONE },
+        "viscous" => Law { smooth: "force += {F_v} * v;", ..NONE },
+        "offset" => Law { smooth: "force += {F_0};", ..NONE },
+        "asymmetry" => {
+            Law { smooth: "force += {dF_v} * fabs(v);", level: "level += {dF_C} * s;", ..NONE }
+        }
+        "stribeck" => Law {
+            level: "level += {dF} * bond * ({v_s} * {v_s}) / ({v_s} * {v_s} + w * w);",
+            hump: "({v_s} * {v_s}) / ({v_s} * {v_s} + w * w)",
+            ..NONE
+        },
+        "stribeck:gaussian" => Law {
+            level: "level += {dF} * bond * exp(-(w / {v_s}) * (w / {v_s}));",
+            hump: "exp(-(w / {v_s}) * (w / {v_s}))",
+            ..NONE
+        },
+        "stribeck:exponential" => Law {
+            level: "level += {dF} * bond * exp(-pow(fabs(w / {v_s}), {delta}));",
+            hump: "exp(-pow(fabs(w / {v_s}), {delta}))",
+            ..NONE
+        },
+        "rising-static-friction" => Law {
+            level: "level += {dF} * dwell / (dwell + {gamma}) / (1.0 + (w / {v_s}) * (w / {v_s}));",
+            ..NONE
+        },
+        "ripple" => Law {
+            smooth: "{
+    const double a = 6.283185307179586 * (x / {l});
+    const double sine = sin(a), cosine = cos(a);
+    const double second = 2.0 * {a_2} * sine * cosine + {b_2} * (1.0 - 2.0 * sine * sine);
+    force += {a_1} * sine + {b_1} * cosine + second;
+}",
+            ..NONE
+        },
+        "position-friction" => Law {
+            level: "{
+    static const double c[6] = {{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}};
+    const double share = (x - {start}) / ({end} - {start});
+    const double u = share < 0.0 ? 0.0 : (share > 1.0 ? 1.0 : share);
+    const double cosine = cos(3.141592653589793 * u);
+    double before = 1.0, now = cosine, sum = 0.0;
+    int k;
+    for (k = 0; k < 6; k++) {
+        const double next = 2.0 * cosine * now - before;
+        sum += c[k] * now;
+        before = now;
+        now = next;
+    }
+    level += sum;
+}",
+            ..NONE
+        },
+        "spring" => Law { smooth: "force += {k} * (x - {x_0});", ..NONE },
+        "gravity-pendulum" => Law { smooth: "force += {M} * sin(x - {q_0});", ..NONE },
+        "quadratic-drag" => Law { smooth: "force += {c} * v * fabs(v);", ..NONE },
+        "shear-thinning" => Law { smooth: "force += {dF} * tanh(v / {v_n});", ..NONE },
+        "frictional-memory" | "frictional-memory:lag" | "rising-static-friction:bond" => NONE,
+        _ => return None,
+    })
+}
