@@ -7,6 +7,8 @@ use crate::failure::Failure;
 mod reproduce_control;
 mod reproduce_optimizers;
 mod reproduce_plant;
+mod reproduce_record;
+mod reproduce_table;
 
 /// Makes the commands of `name(module)` pairs: `module::Args` and `module::run`.
 macro_rules! commands {

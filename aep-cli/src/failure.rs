@@ -11,6 +11,8 @@ use missing_physics::DiscoverError;
 
 /// Exit code of wrong usage and bad input.
 pub const BAD_INPUT: u8 = 2;
+/// Exit code of what Ctrl-C ended.
+pub const INTERRUPTED: u8 = 130;
 /// Exit code of everything else that fails.
 pub const FAILED: u8 = 1;
 

@@ -82,7 +82,6 @@ impl Border {
 ///
 /// Rounds to the nearest integer by adding and subtracting 1.5 * 2^52. This has no branch and no
 /// call, so that a whole position is mirrored in vector registers.
-#[expect(clippy::inline_always, reason = "it must be compiled anew for each width")]
 #[inline(always)]
 pub(crate) fn reflect<T: Scalar>(x: T, parent: T, lower: T, upper: T) -> T {
     const SHIFT: f64 = 6_755_399_441_055_744.0;

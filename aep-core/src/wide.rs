@@ -18,7 +18,6 @@ macro_rules! wide {
         $(#[$meta])*
         #[inline]
         pub(crate) fn $name<T: Scalar>($row: $type $(, $arg: $ty)*) $(-> $out)? {
-            #[expect(clippy::inline_always, reason = "it must be compiled anew for each width")]
             #[inline(always)]
             fn plain<T: Scalar>($row: $type $(, $arg: $ty)*) $(-> $out)? $body
 

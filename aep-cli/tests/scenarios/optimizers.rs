@@ -53,3 +53,23 @@ fn a_figure_comes_with_its_curves_its_plot_and_a_verdict_on_each_statement() {
     assert!(desk.read("paper/fig4-readings.csv").contains("standard deviation beta f"));
     assert_eq!(desk.read("paper/claims.csv").lines().count(), 4);
 }
+
+#[test]
+fn figures_made_before_are_kept_and_others_made_again() {
+    let desk = Desk::new();
+    let line = "reproduce fig4 -o paper --no-readings --trials";
+    assert!(!desk.aep(&format!("{line} 5")).done().contains("kept fig4"));
+    let table = desk.read("paper/table.md");
+    assert!(table.starts_with("| figure | about |") && table.contains("| fig4 | AEP |"));
+    assert!(desk.read("paper/table.html").contains("<td>fig4</td>"));
+    let again = desk.aep(&format!("{line} 5"));
+    assert!(again.done().contains("kept fig4"));
+    assert_eq!(desk.read("paper/table.md"), table);
+    // Other conditions, a missing file, a record that is none: made again.
+    assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
+    std::fs::remove_file(desk.path("paper/fig4.csv")).unwrap();
+    assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
+    desk.write("paper/fig4-claims.json", "{");
+    assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
+    assert!(!desk.aep(&format!("{line} 6 --again")).done().contains("kept fig4"));
+}
