@@ -4,6 +4,7 @@
 use crate::app::Global;
 use crate::failure::Failure;
 
+mod optimize_run;
 mod reproduce_control;
 mod reproduce_optimizers;
 mod reproduce_plant;

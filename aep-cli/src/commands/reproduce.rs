@@ -11,7 +11,7 @@ use super::{
     reproduce_control, reproduce_optimizers, reproduce_plant, reproduce_record, reproduce_table,
 };
 use crate::app::Global;
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading};
 use crate::progress::Progress;
 use crate::stop;
@@ -95,9 +95,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let (stop, count) = (stop::flag(), chosen.len());
     for (done, figure) in chosen.into_iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
-            let what = format!("interrupted after {done} of {count} figures");
+            let what = format!("{done} of {count} figures are made");
             let hint = "the same command goes on where this one ended";
-            return Err(Failure { code: INTERRUPTED, ..Failure::failed(what).with_hint(hint) });
+            return Err(Failure::interrupted(&what).with_hint(hint));
         }
         progress.say(format!("{}: {}", figure.name, figure.title));
         let made = match reproduce_record::kept(figure.name, &conditions) {
