@@ -37,6 +37,8 @@ use crate::model::{MASS, Model, ModelError, address};
 /// Effects that a comparison of forces cannot see: a gain of the motor scales all parameters alike
 /// and is known only where the mass is.
 const INVISIBLE: [&str; 1] = ["motor-gain"];
+/// Trial angles of a pendulum's rest on either side of the encoder's zero.
+const ANGLES: i32 = 32;
 /// Periods per sweep of a ripple's trials.
 const SWEEP: usize = 64;
 
@@ -305,6 +307,12 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
+        if self.terms[term].name == "gravity-pendulum" {
+            // Most pendulums hang at the zero of their encoder; a coarse grid passes it by.
+            return (-ANGLES..=ANGLES)
+                .map(|k| vec![std::f64::consts::PI * f64::from(k) / f64::from(ANGLES)])
+                .collect();
+        }
         if self.terms[term].name == "ripple" {
             return limits::periods(&self.prepared, self.stroke)
                 .into_iter()
