@@ -4,9 +4,12 @@
 use crate::app::Global;
 use crate::failure::Failure;
 
+mod optimize_run;
 mod reproduce_control;
 mod reproduce_optimizers;
 mod reproduce_plant;
+mod reproduce_record;
+mod reproduce_table;
 
 /// Makes the commands of `name(module)` pairs: `module::Args` and `module::run`.
 macro_rules! commands {

@@ -11,6 +11,8 @@ use missing_physics::DiscoverError;
 
 /// Exit code of wrong usage and bad input.
 pub const BAD_INPUT: u8 = 2;
+/// Exit code of what Ctrl-C ended.
+pub const INTERRUPTED: u8 = 130;
 /// Exit code of everything else that fails.
 pub const FAILED: u8 = 1;
 
@@ -38,11 +40,22 @@ impl Failure {
         Self { code: FAILED, ..Self::bad_input(what) }
     }
 
+    /// Ended by Ctrl-C.
+    pub fn interrupted(what: &str) -> Self {
+        Self { code: INTERRUPTED, ..Self::failed(format!("interrupted: {what}")) }
+    }
+
     /// The same with a way to mend it.
     #[must_use]
     pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
+    }
+
+    /// The same with a way to mend it where it has none yet.
+    #[must_use]
+    pub fn with_hint_unless_given(self, hint: &str) -> Self {
+        if self.hint.is_some() { self } else { self.with_hint(hint) }
     }
 
     /// The same with the file it is in.

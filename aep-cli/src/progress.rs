@@ -26,6 +26,21 @@ impl Progress {
         Self { line }
     }
 
+    /// Counts up to `length` from now on and estimates when it will be done.
+    pub fn count_to(&self, length: u64) {
+        let bar = "{spinner:.blue} {msg} {wide_bar:.blue} {pos}/{len} {elapsed:.dim} (ETA {eta})";
+        if let Ok(style) = ProgressStyle::with_template(bar) {
+            self.line.set_style(style);
+        }
+        self.line.set_position(0);
+        self.line.set_length(length);
+    }
+
+    /// One more is done.
+    pub fn one_more(&self) {
+        self.line.inc(1);
+    }
+
     /// Says what is being done now.
     pub fn say(&self, text: impl Into<String>) {
         self.line.set_message(text.into());

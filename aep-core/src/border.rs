@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Scalar;
+use crate::{Scalar, wide};
 
 /// What happens to a component that a mutation moved out of the domain. The paper does not say.
 ///
@@ -33,7 +33,6 @@ impl Border {
 
     /// Settles every component of a child that was moved away from `parent`; `redraw` makes another
     /// proposal for a component. A proposal that is not finite never survives.
-    ///
     #[inline]
     pub fn settle<T: Scalar>(
         self,
@@ -44,13 +43,11 @@ impl Border {
     ) {
         let n = child.len();
         let (lower, upper, parent) = (&lower[..n], &upper[..n], &parent[..n]);
-        if all_within(child, lower, upper) {
+        if wide::all_within(child, lower, upper) {
             return;
         }
         if self == Self::Reflect {
-            for j in 0..n {
-                child[j] = reflect(child[j], parent[j], lower[j], upper[j]);
-            }
+            wide::reflect(child, parent, lower, upper);
         } else {
             self.settle_each(child, parent, (lower, upper), redraw);
         }
@@ -80,21 +77,13 @@ impl Border {
     }
 }
 
-/// Whether all components are within their limits: tested without a branch per component, in vector
-/// registers, because most children are inside.
-#[inline]
-fn all_within<T: Scalar>(x: &[T], lower: &[T], upper: &[T]) -> bool {
-    let within = x.iter().zip(lower).zip(upper).map(|((x, lo), hi)| (lo <= x, x <= hi));
-    within.fold(true, |all, (above, below)| all & above & below)
-}
-
 /// Mirrors `x` at both limits if it is outside: the triangle wave of period 2 (upper - lower), which
 /// is the distance to the nearest even multiple of the width. `parent` if `x` is not finite.
 ///
 /// Rounds to the nearest integer by adding and subtracting 1.5 * 2^52. This has no branch and no
 /// call, so that a whole position is mirrored in vector registers.
-#[inline]
-fn reflect<T: Scalar>(x: T, parent: T, lower: T, upper: T) -> T {
+#[inline(always)]
+pub(crate) fn reflect<T: Scalar>(x: T, parent: T, lower: T, upper: T) -> T {
     const SHIFT: f64 = 6_755_399_441_055_744.0;
     let width = (upper - lower).as_f64();
     let phase = (x - lower).as_f64() / width;

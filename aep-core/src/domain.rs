@@ -168,9 +168,11 @@ impl<T: Scalar> Domain<T> {
 
     /// A position drawn uniformly in search coordinates.
     pub fn sample(&self, rng: &mut random::Stream, u: &mut [T]) {
+        let mut local = rng.clone();
         for ((u, &lo), &hi) in u.iter_mut().zip(&self.search_lower).zip(&self.search_upper) {
-            *u = (lo + (hi - lo) * random::uniform(rng)).max(lo).min(hi);
+            *u = (lo + (hi - lo) * random::uniform(&mut local)).max(lo).min(hi);
         }
+        *rng = local;
     }
 }
 

@@ -105,7 +105,11 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Engine<T, M, S> 
             seed: start.seed,
             mutation,
             selection,
-            children: parents.clone(),
+            children: Population {
+                positions: Points::zeros(count, domain.dimension()),
+                costs: parents.costs.clone(),
+                individuals: parents.individuals.clone(),
+            },
             state: State {
                 started: false,
                 generation: 0,

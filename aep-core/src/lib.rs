@@ -114,6 +114,7 @@ mod scalar;
 mod selection;
 mod trace;
 pub mod trials;
+mod wide;
 
 pub use aep::{
     Aep, AepIndividual, AepMutation, AgeLimit, Components, Division, Spread, StepScale, StepUnit,

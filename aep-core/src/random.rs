@@ -4,7 +4,7 @@
 //! individual). A run is therefore a function of its seed alone: one thread, many threads and a
 //! run resumed from a checkpoint draw the same numbers, and there is no generator state to save.
 
-use rand::{RngExt, SeedableRng};
+use rand::{Rng, RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -96,6 +96,12 @@ pub fn index(rng: &mut Stream, bound: usize) -> usize {
     rng.random_range(0..bound)
 }
 
+/// True or false, each with probability 1/2.
+#[inline]
+pub fn coin(rng: &mut Stream) -> bool {
+    rng.next_u64() >> 63 == 1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,6 +117,14 @@ mod tests {
         assert_ne!(reference, draw(1, Purpose::Selection, 2, 3));
         assert_ne!(reference, draw(1, Purpose::Mutation, 3, 3));
         assert_ne!(reference, draw(1, Purpose::Mutation, 2, 4));
+    }
+
+    #[test]
+    fn a_coin_is_an_index_below_two() {
+        let (mut one, mut other) = (Stream::seed_from_u64(3), Stream::seed_from_u64(3));
+        for _ in 0..1_000 {
+            assert_eq!(coin(&mut one), index(&mut other, 2) == 1);
+        }
     }
 
     /// Five-sigma bounds on 10^5 first draws of neighbouring streams: a correct generator fails

@@ -1,7 +1,7 @@
 //! Text into HTML, so that nothing a file contains can become markup.
 
 /// `text` with everything escaped that means something in HTML or in a quoted attribute.
-pub(crate) fn escape(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len() + 8);
     for character in text.chars() {
         match character {

@@ -9,4 +9,5 @@ mod plot;
 pub mod report;
 pub mod words;
 
+pub use html::escape;
 pub use report::Source;

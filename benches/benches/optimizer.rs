@@ -9,7 +9,7 @@ use std::convert::Infallible;
 use std::hint::black_box;
 use std::time::Duration;
 
-use aep_core::random::{Streams, normal};
+use aep_core::random::{Streams, fill_normal, normal};
 use aep_core::{
     Aep, Budget, Domain, Driver, FnProblem, MetaEp, Method, Parallel, Problem, Purpose, Start,
 };
@@ -125,7 +125,9 @@ fn basin(case: Case) -> f64 {
     executor.max_iter(generations).run().expect("a run").cost()
 }
 
-/// The n normal numbers of each evaluation and nothing else.
+/// The n normal numbers of each evaluation and nothing else: drawn one after the other from
+/// `rand_distr::StandardNormal` by a generator of each child's own, as AEP draws them, and summed, so
+/// that no memory is written.
 fn normals(case: Case) -> f64 {
     let streams = Streams::new(1, Purpose::Mutation, 1);
     (0..case.evaluations as usize)
@@ -134,6 +136,17 @@ fn normals(case: Case) -> f64 {
             (0..case.dimension).map(|_| normal::<f64>(&mut rng)).sum::<f64>()
         })
         .sum()
+}
+
+/// The same numbers written by `fill_normal` into a population's memory.
+fn filled(case: Case) -> f64 {
+    let streams = Streams::new(1, Purpose::Mutation, 1);
+    let mut population = vec![0.0; case.dimension * case.population];
+    for i in 0..case.evaluations as usize {
+        let from = i % case.population * case.dimension;
+        fill_normal(&mut streams.stream(i), &mut population[from..from + case.dimension]);
+    }
+    population[0]
 }
 
 fn objective(case: Case) -> f64 {
@@ -160,6 +173,7 @@ fn overhead(criterion: &mut Criterion) {
         let practical = Aep::practical().with_population(case.population);
         group.bench_function("objective", |b| b.iter(|| objective(case)));
         group.bench_function("normal numbers", |b| b.iter(|| normals(case)));
+        group.bench_function("normal numbers, kept", |b| b.iter(|| filled(case)));
         group.bench_function("aep", |b| b.iter(|| ours(case, &aep)));
         if case.dimension < 1_000 {
             group.bench_function("aep-practical", |b| b.iter(|| ours(case, &practical)));

@@ -7,8 +7,13 @@
 
 use std::hint::black_box;
 
+use aep_core::Aep;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use friction_ident::{Axis, Model, Plants, Start};
+use friction_ident::challenge::{self, Hide, Level};
+use friction_ident::{
+    Axis, MeasuredMotion, Model, Plants, Start, WindowOptions, columns_along, force_along, paper,
+    window_errors,
+};
 
 /// Steps of one run.
 const STEPS: usize = 2000;
@@ -237,5 +242,59 @@ fn effects(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, simulators, effects);
+/// The force along 25,000 samples of a measured motion, and its columns.
+fn force_along_a_motion(c: &mut Criterion) {
+    let time: Vec<f64> = (0..25_000).map(|k| f64::from(k) * 1e-3).collect();
+    let x: Vec<f64> = time.iter().map(|t| 0.1 * t.sin()).collect();
+    let v: Vec<f64> = time.iter().map(|t| 0.1 * t.cos()).collect();
+    let a: Vec<f64> = x.iter().map(|x| -x).collect();
+    let motion = MeasuredMotion::new(&time, &x, &v, &a).expect("equally long channels");
+    let with = |names: &[&str]| {
+        let model = Model::new(Axis::Linear, 30.0).expect("a valid model");
+        names.iter().fold(model, |model, name| model.with(name, &[]).expect("a known effect"))
+    };
+    let plain = with(&["coulomb", "viscous", "offset", "asymmetry", "stribeck", "actuator-lag"]);
+    let contact = plain.clone().with("presliding", &[]).expect("a known effect");
+    let mut group = c.benchmark_group("force along a motion");
+    group.sample_size(20).throughput(Throughput::Elements(25_000));
+    for (name, model) in [("6 effects", plain), ("with a contact", contact)] {
+        group.bench_function(format!("force, {name}"), |b| {
+            b.iter(|| force_along(black_box(&model), &motion));
+        });
+        group.bench_function(format!("columns, {name}"), |b| {
+            b.iter(|| columns_along(black_box(&model), &motion));
+        });
+    }
+    group.finish();
+}
+
+/// Windows of a challenge at the truth.
+fn windows(c: &mut Criterion) {
+    let made = challenge::generate(&Hide::Nothing, 1, Level::Clear).expect("a challenge");
+    let mut group = c.benchmark_group("windows");
+    group.sample_size(10).throughput(Throughput::Elements(made.recording.len() as u64));
+    for length in [0.1, 0.5] {
+        let options = WindowOptions::new(length);
+        group.bench_function(format!("of {length} s"), |b| {
+            b.iter(|| window_errors(&made.truth.model, black_box(&made.recording), &options));
+        });
+    }
+    group.finish();
+}
+
+/// The paper's identification: 8 parameters, 8,000 samples, 40 individuals, 250 generations; on all
+/// cores.
+fn identification(c: &mut Criterion) {
+    let table = paper::table().expect("the paper's table");
+    let data = paper::training_data(&table, paper::SAMPLE_TIME).expect("a recording");
+    let task = paper::task(&data, paper::SAMPLE_TIME).expect("a task");
+    let mut group = c.benchmark_group("identification");
+    group.sample_size(10);
+    group.bench_function("40 individuals, 250 generations", |b| {
+        b.iter(|| paper::identify(&task, &Aep::practical(), paper::GENERATIONS, 1));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, simulators, effects, force_along_a_motion, windows, identification);
 criterion_main!(benches);

@@ -2,12 +2,15 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use aep_core::trials::{Plan, RankTest, Summary, Trials, rank_test};
 use aep_core::{Budget, Method, methods};
 use aep_problems::TestProblem;
 use serde::Serialize;
 
+use super::optimize_run::{self, RunArgs};
 use super::problems::known;
 use super::reproduce::keep;
 use crate::app::Global;
@@ -15,13 +18,16 @@ use crate::curve_plot::{self, Axes, Curve};
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading};
 use crate::progress::Progress;
+use crate::stop;
 
 /// Compare optimizers on a test function: same initial populations, statistics over trials
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   aep optimize rosenbrock --algorithm aep-practical,de,cma-es --trials 50
   aep optimize f5 --algorithm aep,meta-ep --generations 1500 -o f5
-  aep optimize rastrigin --dimension 5 --shift --evaluations 50000")]
+  aep optimize rastrigin --dimension 5 --shift --evaluations 50000
+  aep optimize f4 --algorithm aep-practical --trace run.csv --checkpoint run.ckpt
+  aep optimize f4 --algorithm aep-practical --resume run.ckpt")]
 pub struct Args {
     /// Test function ('aep problems' lists them)
     #[arg(value_name = "PROBLEM")]
@@ -46,6 +52,9 @@ pub struct Args {
     /// Generations of each trial in place of evaluations
     #[arg(long, value_name = "N", conflicts_with = "evaluations")]
     generations: Option<u64>,
+    /// Seconds of each trial at most; results then depend on the machine
+    #[arg(long, value_name = "SECONDS", value_parser = super::positive)]
+    time: Option<f64>,
     /// Cost that counts as solved; by default the function's own
     #[arg(long, value_name = "COST", allow_negative_numbers = true)]
     target: Option<f64>,
@@ -67,6 +76,8 @@ pub struct Args {
     /// Write the summary as JSON; `-` for the terminal
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    single: RunArgs,
 }
 
 /// The results, as written to JSON.
@@ -88,14 +99,32 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let chosen = args.algorithm.iter().map(|name| method(name, args.population));
     let chosen = chosen.collect::<Result<Vec<Box<dyn Method>>, Failure>>()?;
     let target = args.target.unwrap_or_else(|| problem.target());
+    if args.single.wanted() {
+        let [method] = &chosen[..] else {
+            let what = "--trace, --checkpoint and --resume follow a single run";
+            return Err(Failure::bad_input(what).with_hint("name one optimizer by --algorithm"));
+        };
+        let run = (budget(args, target), args.seed);
+        let problem = if args.shift { problem.with_random_shift(args.seed) } else { problem };
+        return optimize_run::run(&args.single, &**method, &problem, run, global);
+    }
     let plan = Plan::new(args.trials as usize, budget(args, target)).with_seed(args.seed);
     let progress = Progress::new(global.quiet);
+    progress.count_to(u64::from(args.trials) * chosen.len() as u64);
+    let stop = stop::flag();
     let mut results = Vec::new();
     for method in &chosen {
-        progress.say(format!("{}: {} trials", method.name(), args.trials));
-        results.push(trials(args, &plan, &**method, &problem)?);
+        progress.say(method.name());
+        let trials = trials(args, &plan, &**method, &problem, (stop, &progress))?;
+        if !trials.trials.is_empty() {
+            results.push(trials);
+        }
     }
     drop(progress);
+    let interrupted = stop.load(Ordering::Relaxed);
+    if interrupted && results.is_empty() {
+        return Err(Failure::interrupted("no trial had ended"));
+    }
     let comparison = compare(&problem, target, plan, &results);
     if let Some(path) = &args.json {
         output::save_json(path, &comparison)?;
@@ -103,7 +132,13 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let files = args.output.as_deref().map_or(Ok(Vec::new()), |directory| {
         write(directory, &problem, &comparison, &results)
     })?;
-    if global.quiet { Ok(()) } else { output::print(&report(&comparison, &files)) }
+    if !global.quiet {
+        output::print(&report(&comparison, &files))?;
+    }
+    if interrupted {
+        return Err(Failure::interrupted("the trials that had ended are what is reported"));
+    }
+    Ok(())
 }
 
 fn problem(args: &Args) -> Result<TestProblem, Failure> {
@@ -130,6 +165,10 @@ fn budget(args: &Args, target: f64) -> Budget {
         Some(generations) => Budget::generations(generations),
         None => Budget::evaluations(args.evaluations),
     };
+    let budget = match args.time {
+        Some(seconds) => budget.with_time(Duration::from_secs_f64(seconds.min(1e9))),
+        None => budget,
+    };
     if args.noise { budget } else { budget.with_target(target) }
 }
 
@@ -138,12 +177,14 @@ fn trials(
     plan: &Plan,
     method: &dyn Method,
     problem: &TestProblem,
+    (stop, progress): (&AtomicBool, &Progress),
 ) -> Result<Trials, Failure> {
     let of_trial = |trial: usize| {
         let problem = problem.clone();
         if args.shift { problem.with_random_shift(plan.trial_seed(trial)) } else { problem }
     };
-    plan.run(method, of_trial).map_err(|error| {
+    let ended = || progress.one_more();
+    plan.run_watched(method, of_trial, stop, &ended).map_err(|error| {
         Failure::bad_input(error.to_string()).with_hint("change --population or --algorithm")
     })
 }

@@ -3,14 +3,18 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use aep_problems::paper::Claim;
 
-use super::{reproduce_control, reproduce_optimizers, reproduce_plant};
+use super::{
+    reproduce_control, reproduce_optimizers, reproduce_plant, reproduce_record, reproduce_table,
+};
 use crate::app::Global;
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading};
 use crate::progress::Progress;
+use crate::stop;
 
 /// Reproduce figures of the AEP paper: CSV, SVG, and a table of what agrees
 #[derive(clap::Args)]
@@ -33,6 +37,9 @@ pub struct Args {
     /// Leave out the other readings of what the paper does not say
     #[arg(long)]
     no_readings: bool,
+    /// Make figures again that the folder already has, made with the same seed, trials and version
+    #[arg(long)]
+    again: bool,
 }
 
 /// A figure: what it is called and how it is made.
@@ -84,17 +91,39 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let progress = Progress::new(global.quiet);
     let mut rows = Vec::new();
     let mut files = Vec::new();
-    for figure in chosen {
+    let mut kept = Vec::new();
+    let (stop, count) = (stop::flag(), chosen.len());
+    for (done, figure) in chosen.into_iter().enumerate() {
+        if stop.load(Ordering::Relaxed) {
+            let what = format!("{done} of {count} figures are made");
+            let hint = "the same command goes on where this one ended";
+            return Err(Failure::interrupted(&what).with_hint(hint));
+        }
         progress.say(format!("{}: {}", figure.name, figure.title));
-        let made = (figure.make)(figure.name, &conditions)?;
+        let made = match reproduce_record::kept(figure.name, &conditions) {
+            Some(made) if !args.again => {
+                kept.push(figure.name);
+                made
+            }
+            _ => {
+                let made = (figure.make)(figure.name, &conditions)?;
+                reproduce_record::keep(figure.name, &conditions, &made)?;
+                made
+            }
+        };
         rows.extend(made.claims.into_iter().map(|claim| (figure.name, claim)));
         files.extend(made.files);
     }
     drop(progress);
-    let table = args.output.join("claims.csv");
-    output::save(&table, &claims_csv(&rows))?;
-    files.push(table);
-    if global.quiet { Ok(()) } else { output::print(&report(&rows, &files)) }
+    let tables = [
+        ("claims.csv", reproduce_table::csv(&rows)),
+        ("table.md", reproduce_table::markdown(&rows)),
+        ("table.html", reproduce_table::html(&rows)),
+    ];
+    for (name, text) in tables {
+        keep(&mut files, &args.output.join(name), &text)?;
+    }
+    if global.quiet { Ok(()) } else { output::print(&report(&rows, &kept, &files)) }
 }
 
 fn chosen(names: &[String]) -> Result<Vec<&'static Figure>, Failure> {
@@ -109,7 +138,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Figure>, Failure> {
     Ok(all().filter(wanted).collect())
 }
 
-fn report(rows: &[(&str, Claim)], files: &[PathBuf]) -> String {
+fn report(rows: &[(&str, Claim)], kept: &[&str], files: &[PathBuf]) -> String {
     let mut table = Table::new(&[
         ("figure", Align::Left),
         ("about", Align::Left),
@@ -125,18 +154,16 @@ fn report(rows: &[(&str, Claim)], files: &[PathBuf]) -> String {
     let agreeing = rows.iter().filter(|(_, claim)| claim.agrees()).count();
     let mut text = heading("The paper's statements and ours") + &table.text();
     let _ = writeln!(text, "\n {agreeing} of {} agree", rows.len());
+    for (figure, claim) in rows {
+        if let Some(reason) = &claim.reason {
+            let _ = writeln!(text, " {figure}, {}: {reason}", claim.about);
+        }
+    }
+    if !kept.is_empty() {
+        let _ = writeln!(text, " {} {} ('--again' makes them anew)", dim("kept"), kept.join(", "));
+    }
     for file in files {
         let _ = writeln!(text, " {} {}", dim("written"), file.display());
-    }
-    text
-}
-
-fn claims_csv(rows: &[(&str, Claim)]) -> String {
-    let mut text = String::from("figure,about,paper,ours,verdict,reason\n");
-    for (figure, claim) in rows {
-        let (about, paper, ours) = (quote(&claim.about), quote(&claim.paper), quote(&claim.ours));
-        let reason = quote(claim.reason.as_deref().unwrap_or_default());
-        let _ = writeln!(text, "{figure},{about},{paper},{ours},{},{reason}", claim.verdict);
     }
     text
 }

@@ -73,6 +73,24 @@ impl Desk {
         }
     }
 
+    /// Runs `aep` and sends it Ctrl-C after `seconds`.
+    #[cfg(unix)]
+    pub fn interrupted(&self, line: &str, seconds: f64) -> Run {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_aep"));
+        command.args(line.split_whitespace()).current_dir(self.folder.path());
+        command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped());
+        let child = command.spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_secs_f64(seconds));
+        let process = child.id().to_string();
+        assert!(Command::new("kill").args(["-INT", &process]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        Run {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
     /// A recording with `effect` hidden in it, in the folder `name`.
     pub fn challenge(&self, effect: &str, seed: u64, name: &str) {
         self.aep(&format!("challenge --hide {effect} --seed {seed} -o {name}")).done();

@@ -53,3 +53,58 @@ fn a_figure_comes_with_its_curves_its_plot_and_a_verdict_on_each_statement() {
     assert!(desk.read("paper/fig4-readings.csv").contains("standard deviation beta f"));
     assert_eq!(desk.read("paper/claims.csv").lines().count(), 4);
 }
+
+#[test]
+fn figures_made_before_are_kept_and_others_made_again() {
+    let desk = Desk::new();
+    let line = "reproduce fig4 -o paper --no-readings --trials";
+    assert!(!desk.aep(&format!("{line} 5")).done().contains("kept fig4"));
+    let table = desk.read("paper/table.md");
+    assert!(table.starts_with("| figure | about |") && table.contains("| fig4 | AEP |"));
+    assert!(desk.read("paper/table.html").contains("<td>fig4</td>"));
+    let again = desk.aep(&format!("{line} 5"));
+    assert!(again.done().contains("kept fig4"));
+    assert_eq!(desk.read("paper/table.md"), table);
+    // Other conditions, a missing file, a record that is none: made again.
+    assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
+    std::fs::remove_file(desk.path("paper/fig4.csv")).unwrap();
+    assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
+    desk.write("paper/fig4-claims.json", "{");
+    assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
+    assert!(!desk.aep(&format!("{line} 6 --again")).done().contains("kept fig4"));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_comparison_and_reports_the_trials_that_had_ended() {
+    let desk = Desk::new();
+    let line = "optimize rastrigin --dimension 10 --algorithm meta-ep --target 0 \
+                --trials 100000 --evaluations 20000 -o out";
+    let run = desk.interrupted(line, 2.0);
+    assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
+    assert!(run.err.contains("interrupted") && run.out.contains("meta-ep"), "{}", run.err);
+    let rows = desk.read("out/trials.csv").lines().count() - 1;
+    assert!(0 < rows && rows < 100_000, "{rows} trials");
+}
+
+#[test]
+fn a_saved_run_goes_on_to_the_same_end_and_a_broken_file_is_refused() {
+    let desk = Desk::new();
+    let line = "optimize powers --dimension 6 --algorithm aep-practical --target 0 --generations";
+    let whole = desk.aep(&format!("{line} 60 --trace run.jsonl"));
+    assert_eq!(desk.read("run.jsonl").lines().count(), 62);
+    desk.aep(&format!("{line} 25 --checkpoint run.ckpt --trace run.csv")).done();
+    assert!(desk.read("run.csv").starts_with("generation,evaluations,failures,"));
+    let bytes = std::fs::read(desk.path("run.ckpt")).unwrap();
+    let resumed = desk.aep(&format!("{line} 60 --resume run.ckpt --threads 2"));
+    assert_eq!(resumed.done(), whole.done());
+    desk.write("run.ckpt", &bytes[..bytes.len() / 2]);
+    desk.aep(&format!("{line} 60 --resume run.ckpt"))
+        .refused(&["run.ckpt", "truncated or damaged"]);
+    desk.write("run.ckpt", "generation,cost\n1,2\n");
+    desk.aep(&format!("{line} 60 --resume run.ckpt")).refused(&["not a checkpoint"]);
+    desk.write("run.ckpt", &bytes);
+    desk.aep(&format!("{line} 60 --seed 2 --resume run.ckpt")).refused(&["another run", "seed"]);
+    desk.aep("optimize f1 --algorithm aep,de --trace a.csv").refused(&["single run"]);
+    desk.aep("optimize f1 --algorithm aep --trace a.txt").refused(&[".csv or a .jsonl"]);
+}

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::random::{Stream, index};
-use crate::{Individual, Scalar};
+use crate::random::{Stream, coin};
+use crate::{Individual, Scalar, wide};
 
 /// Search direction per component and age.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -15,7 +15,9 @@ pub struct AepIndividual {
 impl AepIndividual {
     /// Random directions, age 1.
     pub fn random(dimension: usize, rng: &mut Stream) -> Self {
-        let directions = (0..dimension).map(|_| if index(rng, 2) == 0 { -1 } else { 1 }).collect();
+        let mut local = rng.clone();
+        let directions = (0..dimension).map(|_| if coin(&mut local) { 1 } else { -1 }).collect();
+        *rng = local;
         Self { directions, age: 1 }
     }
 
@@ -43,13 +45,7 @@ impl<T: Scalar> Individual<T> for AepIndividual {
     /// d = sgn(child - parent), age = 1. A component that did not move (the border held it) keeps
     /// its direction: the paper's d is -1 or +1, never 0.
     fn won(&mut self, parent: &[T], child: &[T]) {
-        for ((direction, parent), child) in self.directions.iter_mut().zip(parent).zip(child) {
-            if child > parent {
-                *direction = 1;
-            } else if child < parent {
-                *direction = -1;
-            }
-        }
+        wide::turn(&mut self.directions, parent, child);
         self.age = 1;
     }
 

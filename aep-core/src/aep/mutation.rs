@@ -3,6 +3,7 @@
 use super::step::{Steps, add_scaled};
 use super::{Aep, AepIndividual, AgeLimit, Components, Division, Spread, StepUnit};
 use crate::random::{self, Stream};
+use crate::wide;
 use crate::{Child, Domain, Mutation, Population, Scalar};
 
 /// The mutation of AEP, as configured by [`Aep`].
@@ -120,17 +121,8 @@ impl<T: Scalar> AepMutation<T> {
         let (base, units) = (&step.base[..n], &self.steps.units[..n]);
         random::fill_normal(rng, child);
         match step.directions {
-            None => {
-                for j in 0..n {
-                    child[j] = base[j] + step.sigma * units[j] * child[j];
-                }
-            }
-            Some(directions) => {
-                for (j, direction) in directions[..n].iter().enumerate() {
-                    let length = (step.sigma * units[j] * child[j]).abs();
-                    child[j] = base[j] + length * T::of(f64::from(*direction));
-                }
-            }
+            None => wide::step(child, base, units, step.sigma),
+            Some(directions) => wide::step_along(child, base, units, step.sigma, directions),
         }
         self.settle(step, step.sigma, rng, child);
     }

@@ -24,6 +24,7 @@ mod curve;
 mod rank;
 mod summary;
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use rayon::prelude::*;
@@ -73,11 +74,32 @@ impl Plan {
         method: &dyn Method<T>,
         problem: impl Fn(usize) -> P + Sync,
     ) -> Result<Trials, RunError> {
-        let trials: Result<Vec<Trial>, RunError> = (0..self.trials)
-            .into_par_iter()
-            .map(|trial| self.trial(method, &problem(trial), self.trial_seed(trial)))
-            .collect();
-        Ok(Trials { method: method.name(), trials: trials? })
+        self.run_watched(method, problem, &AtomicBool::new(false), &|| {})
+    }
+
+    /// The same until `stop` is set, for example by Ctrl-C: what is returned are the trials that had
+    /// ended by then. `ended` is called after each of them, from any thread.
+    pub fn run_watched<T: Scalar, P: Problem<T>>(
+        &self,
+        method: &dyn Method<T>,
+        problem: impl Fn(usize) -> P + Sync,
+        stop: &AtomicBool,
+        ended: &(dyn Fn() + Sync),
+    ) -> Result<Trials, RunError> {
+        let one = |trial: usize| {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
+            let run = self.trial(method, &problem(trial), self.trial_seed(trial), stop)?;
+            let whole = run.stop != StopReason::Interrupted;
+            if whole {
+                ended();
+            }
+            Ok(whole.then_some(run))
+        };
+        let trials: Result<Vec<Option<Trial>>, RunError> =
+            (0..self.trials).into_par_iter().map(one).collect();
+        Ok(Trials { method: method.name(), trials: trials?.into_iter().flatten().collect() })
     }
 
     fn trial<T: Scalar>(
@@ -85,10 +107,12 @@ impl Plan {
         method: &dyn Method<T>,
         problem: &dyn Problem<T>,
         seed: u64,
+        stop: &AtomicBool,
     ) -> Result<Trial, RunError> {
         let mut algorithm = method.start(&Start::new(problem.domain(), seed))?;
         let mut improvements: Vec<(u64, f64)> = Vec::new();
         let outcome = Driver::new(self.budget.clone())
+            .with_stop_flag(stop)
             .with_observer(|progress: &Progress<'_, T>| {
                 let cost = progress.best_cost().as_f64();
                 if improvements.last().is_none_or(|(_, best)| cost < *best) {

@@ -54,6 +54,8 @@ pub struct Line {
     pub method: Setting,
     /// What the paper says of it.
     pub printed: &'static [Printed],
+    /// What is known of why ours differs, where it does.
+    pub why_not: Option<&'static str>,
 }
 
 /// A method of the paper with its parameters.
@@ -93,7 +95,13 @@ impl Figure {
         let lines: Vec<Trials> = self.lines.iter().map(run).collect::<Result<_, _>>()?;
         let mut claims = Vec::new();
         for (line, trials) in self.lines.iter().zip(&lines) {
-            let judge = |printed: &Printed| printed.judge(line.label, trials, self.target);
+            let judge = |printed: &Printed| {
+                let claim = printed.judge(line.label, trials, self.target);
+                match line.why_not {
+                    Some(why) if !claim.agrees() => claim.because(why),
+                    _ => claim,
+                }
+            };
             claims.extend(line.printed.iter().map(judge));
         }
         if let (true, [aep, other, ..]) = (self.aep_ahead, &lines[..]) {

@@ -1,7 +1,7 @@
 //! Cost of identification by simulation against samples, candidates and effects, on one core, with
 //! the memory in use.
 //!
-//! `cargo run --release -p friction-ident --example scaling`
+//! `cargo run --release -p benches --bin scaling`
 
 use std::time::Instant;
 
