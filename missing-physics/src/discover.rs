@@ -224,9 +224,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     fn run(mut self) -> Discovery {
         let base = self.fit.clone();
+        let mut first_screening = None;
         let mut last_screening;
         loop {
             last_screening = self.screen();
+            first_screening.get_or_insert_with(|| last_screening.clone());
             self.ladder.rank(&last_screening);
             let enough = self.ladder.added().len() >= self.settings.most;
             if enough || self.stopped() || self.at_floor() {
@@ -247,7 +249,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             self.drop_idle(newest);
         }
         self.observer.event(&Event::Finishing);
-        self.report(&base, &last_screening)
+        self.report(&base, &first_screening.unwrap_or_default(), &last_screening)
     }
 
     fn stopped(&self) -> bool {
@@ -504,32 +506,55 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         }
     }
 
-    fn report(self, base: &Fit, screened: &[Screened]) -> Discovery {
+    fn report(mut self, base: &Fit, first: &[Screened], last: &[Screened]) -> Discovery {
+        let mut evidence = self.evidence(base, &self.fit, last);
+        let mut notes = Vec::new();
+        if !self.ladder.added().is_empty()
+            && verdict::explains_little(self.family, &self.split, &evidence)
+        {
+            notes.push(format!(
+                "nearest: {} would lower the held-out error only to {:.2} %, and most of the structure \
+                 would remain: that is not the cause",
+                self.ladder.joined(&self.ladder.added()),
+                100.0 * self.ladder.relative(),
+            ));
+            self.ladder.clear();
+            evidence = self.evidence(base, base, first);
+        }
+        let mut discovery = verdict::report(self.family, self.ladder, &evidence);
+        discovery.notes.append(&mut notes);
+        let seed = self.settings.seed;
+        diagnosis::attach(self.family, base, evidence.last, seed, &mut discovery);
+        discovery.seed = seed;
+        discovery.wall_s = self.started.elapsed().as_secs_f64();
+        discovery
+    }
+
+    fn evidence<'b>(
+        &self,
+        base: &'b Fit,
+        last: &'b Fit,
+        screened: &'b [Screened],
+    ) -> verdict::Evidence<'b> {
         let view = |residual: &[f64]| {
-            where_it_fails::coordinates(
-                self.family,
-                &where_it_fails::View {
-                    residual,
-                    weights: &weights(self.family.doubt(), residual),
-                    motion: &self.motion,
-                    seed: self.settings.seed,
-                },
-            )
+            let weights = weights(self.family.doubt(), residual);
+            let view = where_it_fails::View {
+                residual,
+                weights: &weights,
+                motion: &self.motion,
+                seed: self.settings.seed,
+            };
+            where_it_fails::coordinates(self.family, &view)
         };
-        let evidence = verdict::Evidence {
+        verdict::Evidence {
             where_base: view(&base.residual),
-            where_last: view(&self.fit.residual),
+            where_last: view(&last.residual),
             base,
-            last: &self.fit,
+            last,
             screened,
             alpha: self.settings.alpha,
             interrupted: self.stopped(),
-        };
-        let mut discovery = verdict::report(self.family, self.ladder, &evidence);
-        diagnosis::attach(self.family, base, &self.fit, self.settings.seed, &mut discovery);
-        discovery.seed = self.settings.seed;
-        discovery.wall_s = self.started.elapsed().as_secs_f64();
-        discovery
+        }
     }
 }
 

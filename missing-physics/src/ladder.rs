@@ -49,6 +49,14 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         names.join(" + ")
     }
 
+    /// Takes back all that has been added.
+    pub(crate) fn clear(&mut self) {
+        self.rungs.truncate(1);
+        self.ranking.truncate(1);
+        self.added.clear();
+        self.rivals.clear();
+    }
+
     /// Replaces the last rung by one without `term`.
     pub(crate) fn drop(&mut self, term: usize, fit: &Fit) {
         self.added.retain(|&index| index != term);

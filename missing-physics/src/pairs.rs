@@ -189,11 +189,11 @@ impl<'a> Own<'a> {
         let row = joint.row[second].unwrap_or_default();
         let (n, m) = (self.trial.columns.len(), other.columns.len());
         let mut gram = vec![vec![0.0; n + m]; n + m];
-        for i in 0..n {
-            gram[i][..n].copy_from_slice(&self.trial.gram[i]);
+        for (i, (own, cross)) in self.trial.gram.iter().zip(&self.cross).enumerate() {
+            gram[i][..n].copy_from_slice(own);
             for j in 0..m {
-                gram[i][n + j] = self.cross[i][row + j];
-                gram[n + j][i] = self.cross[i][row + j];
+                gram[i][n + j] = cross[row + j];
+                gram[n + j][i] = cross[row + j];
             }
         }
         for j in 0..m {

@@ -12,6 +12,7 @@ use crate::quantity::quantity;
 use crate::report::{Discovery, Verdict, Where};
 use crate::screen::Screened;
 use crate::shapes::amplitudes;
+use crate::split::Split;
 use crate::where_it_fails;
 
 /// A residual that depends on a coordinate with at most this p-value may be structure.
@@ -19,7 +20,7 @@ const STRUCTURE: f64 = 0.005;
 /// It is, where its share of the squared error, times the share of that which is not noise, is at least
 /// this. Along time the floor does not count: what changes with time is part of it.
 const SHARE: f64 = 0.08;
-/// Effects are only named with confidence where they remove at least this share of what is not noise, or
+/// Effects are only named where they remove at least this share of what is not noise, or
 /// leave no structure.
 const MOST: f64 = 0.5;
 
@@ -41,6 +42,39 @@ pub struct Evidence<'a> {
     pub interrupted: bool,
 }
 
+/// The place at which structure stands out of the noise, if any.
+fn structure<'a, F: ModelFamily + ?Sized>(
+    family: &F,
+    places: &'a [Where],
+    left: f64,
+    floor: f64,
+) -> Option<&'a Where> {
+    let is_time = |place: &Where| {
+        let named = family.coordinates().iter().find(|c| c.name == place.coordinate);
+        named.is_some_and(where_it_fails::only_grows)
+    };
+    let above = 1.0 - (floor / left).powi(2).min(1.0);
+    places.iter().find(|place| {
+        let above = if is_time(place) { 1.0 } else { above };
+        place.p_value <= STRUCTURE && place.share * above >= SHARE
+    })
+}
+
+/// Whether what has been added removes little of what is not noise and leaves structure: then the nearest
+/// effects of the library are not the cause.
+pub fn explains_little<F: ModelFamily + ?Sized>(
+    family: &F,
+    split: &Split,
+    evidence: &Evidence<'_>,
+) -> bool {
+    let floor = noise::floor_of(family, &evidence.last.residual);
+    let rms = |fit: &Fit| split.rms(&fit.residual).validation;
+    let (before, left) = (rms(evidence.base), rms(evidence.last));
+    let excess = |rms: f64| (rms * rms - floor * floor).max(0.0);
+    structure(family, &evidence.where_last, left, floor).is_some()
+        && excess(left) > (1.0 - MOST) * excess(before)
+}
+
 /// The report, but for seed and time.
 pub fn report<F: ModelFamily + ?Sized>(
     family: &F,
@@ -55,21 +89,10 @@ pub fn report<F: ModelFamily + ?Sized>(
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
 
     let left = split.rms(&evidence.last.residual).validation;
-    let excess = |left: f64| (left * left - floor * floor).max(0.0);
-    let structure = evidence.where_last.iter().find(|place| {
-        let in_time = family
-            .coordinates()
-            .iter()
-            .any(|c| c.name == place.coordinate && where_it_fails::only_grows(c));
-        let above = if in_time { 1.0 } else { excess(left) / (left * left) };
-        place.p_value <= STRUCTURE && place.share * above >= SHARE
-    });
-    let before = split.rms(&evidence.base.residual).validation;
-    let little = excess(left) > (1.0 - MOST) * excess(before);
+    let structure = structure(family, &evidence.where_last, left, floor);
     let verdict = match (added.is_empty(), structure) {
         (true, None) => Verdict::NothingMissing,
         (true, Some(_)) => Verdict::Unexplained,
-        (false, Some(_)) if little => Verdict::Unexplained,
         (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
         (false, _) => Verdict::Ambiguous,
     };
@@ -83,17 +106,9 @@ pub fn report<F: ModelFamily + ?Sized>(
             relative(0),
             quantity.name
         ),
-        Verdict::Unexplained if added.is_empty() => format!(
+        Verdict::Unexplained => format!(
             "The model leaves {:.2} % of the {}, and no effect of the library explains it.",
             relative(0),
-            quantity.name
-        ),
-        Verdict::Unexplained => format!(
-            "Something else is missing: {} would lower the held-out error from {:.2} % to only {:.2} % of \
-             the {}, and no effect of the library explains the rest.",
-            added.join(", "),
-            relative(0),
-            relative(rungs.len() - 1),
             quantity.name
         ),
         Verdict::EffectsFound | Verdict::Ambiguous => format!(

@@ -176,7 +176,9 @@ impl Bins {
         let scale = FINE as f64 / (high - low).max(f64::MIN_POSITIVE);
         let raw = |value: &f64| (((value - low) * scale) as usize).min(FINE - 1);
         let mut points = [0usize; FINE];
-        values.iter().for_each(|value| points[raw(value)] += 1);
+        for value in values {
+            points[raw(value)] += 1;
+        }
         let (mut joined, mut bin, mut inside) = ([0; FINE], 0, 0);
         for (k, points) in points.iter().enumerate() {
             if inside >= FEW {
@@ -188,7 +190,9 @@ impl Bins {
         }
         let of: Vec<usize> = values.iter().map(|value| joined[raw(value)]).collect();
         let mut count = vec![0.0; bin + 1];
-        of.iter().for_each(|bin| count[*bin] += 1.0);
+        for bin in &of {
+            count[*bin] += 1.0;
+        }
         Self { of, count }
     }
 

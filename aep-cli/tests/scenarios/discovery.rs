@@ -188,3 +188,36 @@ fn a_servo_lacks_load_friction_at_one_gain_and_the_other_gain_confirms_it() {
         assert!(rungs[1]["p_value"].as_f64().unwrap() <= 0.05);
     }
 }
+
+#[test]
+fn a_dent_in_the_way_is_no_effect_of_the_library_and_can_be_added_as_a_generic_term() {
+    let desk = Desk::new();
+    desk.challenge("nothing", 3, "c");
+    let recorded = desk.read("c/recording.csv");
+    let mut lines = recorded.lines();
+    let header = lines.next().unwrap();
+    assert!(header.starts_with("time_s,force_N,position_m"), "{header}");
+    let dented = |line: &str| {
+        let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let number = |k: usize| fields[k].parse::<f64>().unwrap();
+        let dent = 8.0 * (-((number(2) - 0.0331) / 0.0015).powi(2)).exp();
+        fields[1] = (number(1) + dent).to_string();
+        fields.join(",")
+    };
+    let rows: Vec<String> = lines.map(dented).collect();
+    desk.write("dent.csv", format!("{header}\n{}\n", rows.join("\n")));
+    desk.write("dent.toml", desk.read("c/recording.toml"));
+    desk.aep("discover dent.csv --json d.json -o m.json").done();
+    let found = desk.json("d.json");
+    assert_eq!(found["verdict"], "unexplained");
+    assert_eq!(found["added"].as_array().unwrap().len(), 0, "{}", found["added"]);
+    assert_eq!(found["where"][0]["coordinate"], "position");
+    desk.write("term.toml", found["generic_term"].as_str().unwrap());
+    let line = "extend dent.csv --model m.json --add local -o better.json --json e.json";
+    desk.aep(&format!("{line} --effects-file term.toml")).done();
+    let rung = &desk.json("e.json")["ladder"][1];
+    for (name, truth) in [("local.a", 8.0), ("local.c", 0.0331), ("local.w", 0.0015)] {
+        let value = rung["parameters"][name]["value"].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.05, "{name} {value}");
+    }
+}

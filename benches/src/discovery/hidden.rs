@@ -159,8 +159,11 @@ impl Case {
     fn fits(&self, other: &Self) -> bool {
         let group = |kind: Hidden| match kind {
             Hidden::ActuatorLag | Hidden::InputDelay => 1,
-            Hidden::Presliding | Hidden::Dahl | Hidden::LuGre => 2,
-            Hidden::Backlash | Hidden::FlexibleCoupling => 2,
+            Hidden::Presliding
+            | Hidden::Dahl
+            | Hidden::LuGre
+            | Hidden::Backlash
+            | Hidden::FlexibleCoupling => 2,
             Hidden::RisingStatic | Hidden::Stribeck | Hidden::GaussianStribeck => 3,
             _ => 0,
         };

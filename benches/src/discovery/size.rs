@@ -58,10 +58,11 @@ fn limits(kind: Hidden) -> (f64, f64, f64) {
         Hidden::InputDelay => (2e-3, 1e-4, 5e-3),
         Hidden::FrictionalMemory => (5e-3, 2e-4, 3e-2),
         Hidden::Presliding | Hidden::Dahl | Hidden::LuGre => (3e-5, 3e-6, 4e-4),
-        Hidden::Stribeck | Hidden::GaussianStribeck | Hidden::RisingStatic => (2.0, 1e-3, 8.0),
+        Hidden::Stribeck | Hidden::GaussianStribeck | Hidden::RisingStatic | Hidden::Backlash => {
+            (2.0, 1e-3, 8.0)
+        }
         Hidden::LoadFriction => (0.1, 1e-3, 0.5),
         Hidden::FlexibleCoupling => (0.2, 1e-3, 0.6),
-        Hidden::Backlash => (2.0, 1e-3, 8.0),
         _ => (2.0, 1e-3, 60.0),
     }
 }

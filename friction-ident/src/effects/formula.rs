@@ -12,7 +12,8 @@
 //! `force` is a force that resists the motion; `level` in its place adds to the friction level. A
 //! formula may use `x` (position), `v` (velocity), `s` (sign of the velocity), `t` (time), `F` (force
 //! of the drive), `pi` and the parameters. Parameters with `linear = true` are amplitudes: the law is
-//! proportional to them.
+//! proportional to them. A minus sign binds tighter than a power: write `exp(-1*x^2)`, for `exp(-x^2)` is
+//! `exp((-x)^2)`.
 
 use std::collections::BTreeMap;
 

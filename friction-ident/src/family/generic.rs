@@ -31,8 +31,9 @@ pub fn effect(coordinate: &Coordinate, shape: &Generic, unit: &str) -> Option<St
         let limit = 10.0 * size.abs().max(1e-3);
         let _ = writeln!(
             parameters,
-            "{name} = {{ unit = \"{unit}\", low = {:e}, high = {limit:e}, default = {size:e}, linear = true }}",
-            -limit
+            "{name} = {{ unit = \"{unit}\", low = -{0}, high = {0}, default = {1}, linear = true }}",
+            plain(limit),
+            plain(size)
         );
     };
     let law = match *shape {
@@ -54,7 +55,7 @@ pub fn effect(coordinate: &Coordinate, shape: &Generic, unit: &str) -> Option<St
             shape_parameter(&mut parameters, "c", &coordinate.unit, around);
             let width = [0.002 * range, 0.1 * range, 0.01 * range];
             shape_parameter(&mut parameters, "w", &coordinate.unit, width);
-            format!("a*exp(-(({variable} - c)/w)^2)")
+            format!("a*exp(-1*(({variable} - c)/w)^2)")
         }
         Generic::Profile { low, high } => {
             let step = (high - low) / (BUMPS - 1) as f64;
@@ -62,7 +63,7 @@ pub fn effect(coordinate: &Coordinate, shape: &Generic, unit: &str) -> Option<St
                 amplitude(&format!("c_{}", k + 1), 1.0);
                 let centre = low + k as f64 * step;
                 let (centre, step) = (plain(centre), plain(step));
-                format!("c_{}*exp(-(({variable} - ({centre}))/{step})^2)", k + 1)
+                format!("c_{}*exp(-1*(({variable} - ({centre}))/{step})^2)", k + 1)
             };
             (0..BUMPS).map(bump).collect::<Vec<_>>().join(" + ")
         }
@@ -77,9 +78,10 @@ fn plain(value: f64) -> String {
 }
 
 fn shape_parameter(text: &mut String, name: &str, unit: &str, [low, high, default]: [f64; 3]) {
+    let [low, high, default] = [low, high, default].map(plain);
     let _ = writeln!(
         text,
-        "{name} = {{ unit = \"{unit}\", low = {low:e}, high = {high:e}, default = {default:e} }}"
+        "{name} = {{ unit = \"{unit}\", low = {low}, high = {high}, default = {default} }}"
     );
 }
 
