@@ -6,10 +6,11 @@ use aep_core::{Aep, MetaEp, Method};
 use friction_ident::Model;
 use friction_ident::family::{FrictionFamily, Options};
 use missing_physics::data_check::cut_at_gaps;
-use missing_physics::discover::{evaluate, terms, weights};
+use missing_physics::discover::{evaluate, terms};
 use missing_physics::fit::Fit;
 use missing_physics::metrics::SplitMetrics;
 use missing_physics::report::{Rung, Verdict};
+use missing_physics::screen::weights;
 use missing_physics::split::Split;
 use missing_physics::where_it_fails::{View, coordinates, regimes};
 use missing_physics::{

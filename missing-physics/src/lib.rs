@@ -7,6 +7,7 @@
 
 pub mod autocorrelation;
 pub mod basis;
+mod climb;
 pub mod confirm;
 pub mod data_check;
 pub mod diagnosis;

@@ -7,8 +7,9 @@
 mod motions;
 
 use missing_physics::basis::dot;
-use missing_physics::discover::{terms, weights};
+use missing_physics::discover::terms;
 use missing_physics::fit::{self, Fit};
+use missing_physics::screen::weights;
 use missing_physics::screen::{self, Screening};
 use missing_physics::split::Split;
 use missing_physics::{DiscoverError, Fitted, Recording, noise, search};

@@ -1,0 +1,408 @@
+//! Up the ladder: what the next rung is, and when there is none.
+
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use crate::discover::{Event, Observer, Settings};
+use crate::family::ModelFamily;
+use crate::fit::{self, Fit};
+use crate::ladder::Ladder;
+use crate::pairs::{self, Pair};
+use crate::report::Discovery;
+use crate::screen::{self, Screened, Screening, weights};
+use crate::split::Split;
+use crate::tried::{self, Tried, as_good, square};
+use crate::{diagnosis, noise, search, verdict, where_it_fails};
+
+/// Candidates that are re-identified per rung.
+const MOST_TRIED: usize = 4;
+/// Pairs that are re-identified where no single candidate helps.
+const MOST_PAIRS: usize = 4;
+/// Smallest share of the held-out squared error that a pair must remove: it has twice the freedom.
+const LEAST_PAIR: f64 = 0.05;
+/// Another form of an effect is taken where it leaves at most this share of the main form's squared
+/// error.
+const BETTER_FORM: f64 = 0.8;
+/// A model is at the noise floor where its error exceeds it by at most this factor.
+const AT_FLOOR: f64 = 1.05;
+/// Other forms are tried where the main form removes at least this share of what the best candidate
+/// removes.
+const HOPEFUL: f64 = 0.4;
+/// Largest p-value of a structure along time that is taken for real.
+const IN_TIME: f64 = 0.005;
+/// Another view contradicts an effect where its error grows by this factor on held-out data and on
+/// fitted data as well: one of them alone is a matter of a few windows.
+const CONTRADICTION: f64 = 1.05;
+
+/// The state of a running discovery.
+pub(crate) struct Search<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    settings: &'a Settings<'a>,
+    observer: &'a mut dyn Observer,
+    started: Instant,
+    split: Split,
+    /// 1 on fitted points, 0 on held-out ones.
+    fitted: Vec<f64>,
+    motion: Vec<Vec<f64>>,
+    excluded: Vec<usize>,
+    fit: Fit,
+    ladder: Ladder<'a, F>,
+}
+
+impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
+    pub(crate) fn new(
+        family: &'a F,
+        settings: &'a Settings<'a>,
+        base: &[usize],
+        excluded: Vec<usize>,
+        observer: &'a mut dyn Observer,
+    ) -> Self {
+        let started = Instant::now();
+        let points = family.target().len();
+        let split = Split::new(points, family.blocks());
+        let fitted: Vec<f64> =
+            split.fit(points).iter().map(|fit| if *fit { 1.0 } else { 0.0 }).collect();
+        let found = search::identify(family, base, &fitted, settings.seed);
+        observer.event(&Event::BaseFitted { evaluations: found.evaluations });
+        let fit = found.fit;
+        let motion = family.motion();
+        let mut ladder = Ladder::new(family, split.clone(), fitted.clone());
+        ladder.push(&[], &fit, None);
+        Self { family, settings, observer, started, split, fitted, motion, excluded, fit, ladder }
+    }
+
+    pub(crate) fn run(mut self) -> Discovery {
+        let base = self.fit.clone();
+        let mut first_screening = None;
+        let mut last_screening;
+        loop {
+            last_screening = self.screen();
+            first_screening.get_or_insert_with(|| last_screening.clone());
+            self.ladder.rank(&last_screening);
+            let enough = self.ladder.added().len() >= self.settings.most;
+            if enough || self.stopped() || self.at_floor() {
+                break;
+            }
+            // Where a plain structure along time explains more, no effect of the library is at work, but
+            // something that happens at its own time.
+            let single = self.best_addition(&last_screening).filter(|best| !self.in_time(best));
+            let chosen = single
+                .or_else(|| self.best_pair(&last_screening).filter(|best| !self.in_time(best)));
+            let Some(chosen) = chosen else { break };
+            if let Some((old, better)) = self.other_form(&chosen) {
+                self.replace(old, better);
+                continue;
+            }
+            let newest = chosen.terms.len();
+            self.add(chosen);
+            self.drop_idle(newest);
+        }
+        self.observer.event(&Event::Finishing);
+        self.report(&base, &first_screening.unwrap_or_default(), &last_screening)
+    }
+
+    fn stopped(&self) -> bool {
+        let asked = self.settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+        asked || self.settings.time_limit.is_some_and(|limit| self.started.elapsed() >= limit)
+    }
+
+    fn screen(&mut self) -> Vec<Screened> {
+        let candidates: Vec<usize> = (0..self.family.terms().len())
+            .filter(|&term| {
+                self.family.joins(&self.fit.model, term)
+                    && self.family.form_of(term).is_none()
+                    && !self.excluded.contains(&term)
+            })
+            .collect();
+        let rung = self.ladder.height();
+        self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let screening = self.screening(&candidates, &weights);
+        let mut screened = screen::screen(self.family, &self.fit, &screening);
+        // A flexible term gains much by chance: what gains more than chance does stands before it.
+        screened.sort_by_key(|candidate| candidate.p_value > self.settings.alpha);
+        screened
+    }
+
+    /// Whether what has been added leaves no more than the noise floor: from there on an effect could
+    /// only fit noise.
+    fn at_floor(&self) -> bool {
+        let floor = || noise::floor_of(self.family, &self.fit.residual);
+        !self.ladder.added().is_empty() && square(&self.fit).sqrt() <= AT_FLOOR * floor()
+    }
+
+    fn screening<'b>(&'b self, candidates: &'b [usize], weights: &'b [f64]) -> Screening<'b> {
+        let rung = self.ladder.added().len() as u64 + 1;
+        Screening {
+            candidates,
+            weights,
+            split: &self.split,
+            motion: &self.motion,
+            seed: self.settings.seed.wrapping_add(rung),
+        }
+    }
+
+    /// The candidate that, re-identified with the whole model, leaves the smallest error, of those that
+    /// lower the held-out error.
+    fn best_addition(&mut self, screened: &[Screened]) -> Option<Tried> {
+        let likely = screened
+            .iter()
+            .filter(|c| c.p_value <= self.settings.alpha && c.gain >= self.settings.least_gain);
+        let mut tried: Vec<Tried> = Vec::new();
+        for candidate in likely.take(MOST_TRIED) {
+            if self.stopped() {
+                break;
+            }
+            self.observer.event(&Event::Trying {
+                effect: &self.family.terms()[candidate.term].name,
+                gain: candidate.gain,
+                p_value: candidate.p_value,
+            });
+            tried.push(self.tried(candidate.term, &candidate.values, candidate.p_value));
+        }
+        let tried = self.with_forms(tried);
+        let mut tried = self.helpful(tried, self.settings.least_gain);
+        let before = square(&self.fit);
+        let chosen = tried::simplest(&tried, before)?;
+        let best = tried.swap_remove(chosen);
+        let rivals =
+            tried.iter().filter(|rival| as_good(rival, &best, before) && !self.at_bound(rival));
+        self.ladder.rivals(best.terms[0], rivals.map(|rival| rival.terms[0]).collect());
+        Some(best)
+    }
+
+    /// Two candidates that help together where no single one does.
+    fn best_pair(&mut self, screened: &[Screened]) -> Option<Tried> {
+        if self.stopped() {
+            return None;
+        }
+        let candidates: Vec<usize> = screened.iter().map(|candidate| candidate.term).collect();
+        let count = candidates.len() * candidates.len().saturating_sub(1) / 2;
+        self.observer.event(&Event::ScreeningPairs { pairs: count });
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let screening = self.screening(&candidates, &weights);
+        let pairs = pairs::screen(self.family, &self.fit, &screening, LEAST_PAIR);
+        let likely = |pair: &&Pair| pair.p_value <= self.settings.alpha;
+        let tried = pairs.iter().filter(likely).take(MOST_PAIRS).map(|pair| {
+            let terms = [0, 1].map(|k| (pair.terms[k], pair.shapes[k].as_slice()));
+            let start = search::joined(self.family, &self.fit, &terms, &self.fitted);
+            let fit = fit::refine(self.family, start, &self.fitted);
+            Tried::new(&pair.terms, fit, pair.p_value)
+        });
+        let tried = tried.collect();
+        self.helpful(tried, LEAST_PAIR).into_iter().next()
+    }
+
+    /// Those that lower the held-out squared error by a share of `least` and that no other view
+    /// contradicts, the smallest error first.
+    fn helpful(&self, mut tried: Vec<Tried>, least: f64) -> Vec<Tried> {
+        let before = self.split.rms(&self.fit.residual).validation;
+        let enough = before * (1.0 - least).sqrt();
+        tried.retain(|tried| {
+            self.split.rms(&tried.fit.residual).validation < enough && self.confirmed(&tried.fit)
+        });
+        tried.sort_by(|a, b| a.square.total_cmp(&b.square));
+        tried
+    }
+
+    /// A term re-identified with the whole model, its shapes searched around `values`.
+    fn tried(&self, term: usize, values: &[f64], p_value: f64) -> Tried {
+        self.tried_from(&self.fit, term, values, p_value)
+    }
+
+    /// The same beside another model than the present one.
+    fn tried_from(&self, beside: &Fit, term: usize, values: &[f64], p_value: f64) -> Tried {
+        let start =
+            search::shaped(self.family, beside, term, values, &self.fitted, self.settings.seed);
+        let fit = fit::refine(self.family, start, &self.fitted);
+        Tried::new(&[term], fit, p_value)
+    }
+
+    /// Another form of an effect that is in the model already, with which the model leaves no more than
+    /// with a new effect beside the form that it has.
+    fn other_form(&self, chosen: &Tried) -> Option<(usize, Tried)> {
+        let main = |term: usize| self.family.form_of(term).unwrap_or(term);
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let screening = self.screening(&[], &weights);
+        let mut best: Option<(usize, Tried)> = None;
+        for old in self.ladder.added() {
+            let forms = (0..self.family.terms().len())
+                .filter(|&form| form != old && main(form) == main(old))
+                .collect::<Vec<_>>();
+            if forms.is_empty() || self.stopped() {
+                continue;
+            }
+            let without = self.fit.model.without(self.family, old);
+            let without = fit::refine(self.family, without, &self.fitted);
+            for form in forms {
+                let values = screen::best_values(self.family, &without, &screening, form);
+                let Some(values) = values else { continue };
+                let tried = self.tried_from(&without, form, &values, chosen.p_value);
+                let leaves = best.as_ref().map_or(chosen.square, |(_, best)| best.square);
+                if tried.square <= leaves && self.confirmed(&tried.fit) {
+                    best = Some((old, tried));
+                }
+            }
+        }
+        best
+    }
+
+    fn replace(&mut self, old: usize, tried: Tried) {
+        let (from, to) = (old, tried.terms[0]);
+        let terms = self.family.terms();
+        self.observer.event(&Event::Replaced { from: &terms[from].name, to: &terms[to].name });
+        self.fit = tried.fit;
+        self.ladder.replace(from, to, &self.fit);
+    }
+
+    /// Whether a parameter of the tried term ended at a limit of its search: what the term says beyond
+    /// a simpler one is then not in the data.
+    fn at_bound(&self, tried: &Tried) -> bool {
+        let model = &tried.fit.model;
+        let values = &model.values[model.range(self.family, model.terms.len() - 1)];
+        let parameters = &self.family.terms()[tried.terms[0]].parameters;
+        parameters.iter().zip(values).any(|(parameter, value)| {
+            let near = |limit: f64| (value - limit).abs() <= 1e-3 * limit.abs().max(1e-12);
+            near(parameter.lower) || near(parameter.upper)
+        })
+    }
+
+    /// Every candidate in its main form, or in another one that is clearly better. Other forms are only
+    /// looked at where the main form is in the running.
+    fn with_forms(&self, tried: Vec<Tried>) -> Vec<Tried> {
+        let before = square(&self.fit);
+        let best = tried.iter().map(|main| main.square).fold(before, f64::min);
+        let hopeful = before - HOPEFUL * (before - best);
+        let better = |main: Tried| if main.square <= hopeful { self.best_form(main) } else { main };
+        tried.into_iter().map(better).collect()
+    }
+
+    /// The main form of an effect, or another one that is clearly better.
+    fn best_form(&self, main: Tried) -> Tried {
+        let weights = weights(self.family.doubt(), &self.fit.residual);
+        let screening = self.screening(&[], &weights);
+        (0..self.family.terms().len())
+            .filter(|&form| self.family.form_of(form) == Some(main.terms[0]))
+            .filter_map(|form| {
+                let values = screen::best_values(self.family, &self.fit, &screening, form)?;
+                Some(self.tried(form, &values, main.p_value))
+            })
+            .filter(|form| form.square < main.square * BETTER_FORM)
+            .min_by(|a, b| a.square.total_cmp(&b.square))
+            .unwrap_or(main)
+    }
+
+    /// Whether a step or a sine in time explains more of the residual than what has been tried.
+    fn in_time(&self, tried: &Tried) -> bool {
+        let share = 1.0 - tried.square / square(&self.fit);
+        let places = self.along_time(&self.fit.residual);
+        places.iter().any(|place| place.p_value <= IN_TIME && place.share > share)
+    }
+
+    fn along_time(&self, residual: &[f64]) -> Vec<crate::report::Where> {
+        let weights = weights(self.family.doubt(), residual);
+        let view = where_it_fails::View {
+            residual,
+            weights: &weights,
+            motion: &self.motion,
+            seed: self.settings.seed,
+        };
+        where_it_fails::times(self.family, &view)
+    }
+
+    /// Whether no other view of the error contradicts: what really acts on the plant helps
+    /// in every view, unless something else that is missing spoils that view.
+    fn confirmed(&self, fit: &Fit) -> bool {
+        let before = self.ladder.views();
+        let after = self.family.views(&fit.model, &self.split);
+        let old = self.split.rms(&self.fit.residual);
+        let new = self.split.rms(&fit.residual);
+        // A view may grow by as much as the residual itself falls.
+        let allowed = |old: f64, new: f64| (old / new).max(CONTRADICTION);
+        let fit = allowed(old.fit, new.fit);
+        let validation = allowed(old.validation, new.validation);
+        after.iter().all(|(name, error)| {
+            before.get(name).is_none_or(|old| {
+                error.validation <= validation * old.validation || error.fit <= fit * old.fit
+            })
+        })
+    }
+
+    fn add(&mut self, tried: Tried) {
+        let before = self.ladder.relative();
+        self.fit = tried.fit;
+        self.ladder.push(&tried.terms, &self.fit, Some(tried.p_value));
+        self.observer.event(&Event::Added {
+            effect: &self.ladder.joined(&tried.terms),
+            before,
+            after: self.ladder.relative(),
+        });
+    }
+
+    /// Takes out effects, added before the `newest`, without which the held-out error is as small.
+    fn drop_idle(&mut self, newest: usize) {
+        let added = self.ladder.added();
+        for &term in &added[..added.len().saturating_sub(newest)] {
+            let with = self.split.rms(&self.fit.residual).validation;
+            let without =
+                fit::refine(self.family, self.fit.model.without(self.family, term), &self.fitted);
+            let error = self.split.rms(&without.residual).validation;
+            if error.powi(2) * (1.0 - 0.5 * self.settings.least_gain) <= with.powi(2) {
+                self.observer.event(&Event::Dropped { effect: &self.family.terms()[term].name });
+                self.fit = without;
+                self.ladder.drop(term, &self.fit);
+            }
+        }
+    }
+
+    fn report(mut self, base: &Fit, first: &[Screened], last: &[Screened]) -> Discovery {
+        let mut evidence = self.evidence(base, &self.fit, last);
+        let mut notes = Vec::new();
+        if !self.ladder.added().is_empty()
+            && verdict::explains_little(self.family, &self.split, &evidence)
+        {
+            notes.push(format!(
+                "nearest: {} would lower the held-out error only to {:.2} %, and most of the structure \
+                 would remain: that is not the cause",
+                self.ladder.joined(&self.ladder.added()),
+                100.0 * self.ladder.relative(),
+            ));
+            self.ladder.clear();
+            evidence = self.evidence(base, base, first);
+        }
+        let mut discovery = verdict::report(self.family, self.ladder, &evidence);
+        discovery.notes.append(&mut notes);
+        let seed = self.settings.seed;
+        diagnosis::attach(self.family, base, evidence.last, seed, &mut discovery);
+        discovery.seed = seed;
+        discovery.wall_s = self.started.elapsed().as_secs_f64();
+        discovery
+    }
+
+    fn evidence<'b>(
+        &self,
+        base: &'b Fit,
+        last: &'b Fit,
+        screened: &'b [Screened],
+    ) -> verdict::Evidence<'b> {
+        let view = |residual: &[f64]| {
+            let weights = weights(self.family.doubt(), residual);
+            let view = where_it_fails::View {
+                residual,
+                weights: &weights,
+                motion: &self.motion,
+                seed: self.settings.seed,
+            };
+            where_it_fails::coordinates(self.family, &view)
+        };
+        verdict::Evidence {
+            where_base: view(&base.residual),
+            where_last: view(&last.residual),
+            base,
+            last,
+            screened,
+            alpha: self.settings.alpha,
+            interrupted: self.stopped(),
+        }
+    }
+}
