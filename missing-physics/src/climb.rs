@@ -292,11 +292,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .unwrap_or(main)
     }
 
-    /// Whether a step or a sine in time explains more of the residual than what has been tried.
+    /// Whether a step or a sine in time explains more of the residual than what has been tried. Two effects
+    /// have so much more freedom that they must leave half of what the plain structure leaves.
     fn in_time(&self, tried: &Tried) -> bool {
-        let share = 1.0 - tried.square / square(&self.fit);
+        let left = tried.square / square(&self.fit);
+        let left = if tried.terms.len() > 1 { 2.0 * left } else { left };
         let places = self.along_time(&self.fit.residual);
-        places.iter().any(|place| place.p_value <= IN_TIME && place.share > share)
+        places.iter().any(|place| place.p_value <= IN_TIME && 1.0 - place.share < left)
     }
 
     fn along_time(&self, residual: &[f64]) -> Vec<crate::report::Where> {
