@@ -114,7 +114,7 @@ pub const FIGURES: &[Figure] = &[
                 method: Setting::MetaEpByPopulation(30.0),
                 printed: &[Printed::FailsIn(3)],
                 why_not: Some(
-                    "depends on the reading of its learning rates: the rate tau' common to all components fails in 3 of 50 (fig6-readings.csv)",
+                    "depends on the reading of its rules: with the rate tau' common to all components and sigma first it fails in 3 of 50, with the position first in 6 (seed 1; fig6-readings.csv)",
                 ),
             },
             Line {
