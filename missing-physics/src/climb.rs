@@ -360,7 +360,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn report(mut self, base: &Fit, first: &[Screened], last: &[Screened]) -> Discovery {
         let mut evidence = self.evidence(base, &self.fit, last);
         let mut notes = Vec::new();
-        if !self.ladder.added().is_empty()
+        // A climb that was cut short has not said its last word.
+        let ended = !self.stopped() && self.ladder.added().len() < self.settings.most;
+        if ended
+            && !self.ladder.added().is_empty()
             && verdict::explains_little(self.family, &self.split, &evidence)
         {
             notes.push(format!(
