@@ -40,6 +40,8 @@ pub struct Evidence<'a> {
     pub alpha: f64,
     /// True where time ran out or the user stopped it.
     pub interrupted: bool,
+    /// True where another view of the last model shows no more than the noise of the measurement may.
+    pub within_noise: bool,
 }
 
 /// The place at which structure stands out of the noise, if any.
@@ -92,7 +94,8 @@ pub fn report<F: ModelFamily + ?Sized>(
     let structure = structure(family, &evidence.where_last, left, floor);
     let verdict = match (added.is_empty(), structure) {
         (true, None) => Verdict::NothingMissing,
-        (true, Some(_)) => Verdict::Unexplained,
+        (true, Some(_)) if !evidence.within_noise => Verdict::Unexplained,
+        (true, Some(_)) => Verdict::NothingMissing,
         (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
         (false, _) => Verdict::Ambiguous,
     };
