@@ -92,10 +92,10 @@ pub fn report<F: ModelFamily + ?Sized>(
 
     let left = split.rms(&evidence.last.residual).validation;
     let structure = structure(family, &evidence.where_last, left, floor);
-    let verdict = match (added.is_empty(), structure) {
-        (true, None) => Verdict::NothingMissing,
-        (true, Some(_)) if !evidence.within_noise => Verdict::Unexplained,
-        (true, Some(_)) => Verdict::NothingMissing,
+    let moves = structure.is_some() && !evidence.within_noise;
+    let verdict = match (added.is_empty(), moves) {
+        (true, false) => Verdict::NothingMissing,
+        (true, true) => Verdict::Unexplained,
         (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
         (false, _) => Verdict::Ambiguous,
     };
@@ -130,6 +130,9 @@ pub fn report<F: ModelFamily + ?Sized>(
             100.0 * place.share,
             place.note
         );
+        if evidence.within_noise {
+            summary.push_str(" The motion shows none of it: that may be the sensor's own.");
+        }
     }
     for choice in &ambiguous {
         let _ = write!(
