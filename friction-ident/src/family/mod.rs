@@ -225,8 +225,9 @@ impl FrictionFamily {
     /// around reversals and impacts, where the smoother matters, much; elsewhere hardly.
     fn disagreement(&self) -> Vec<f64> {
         let p = &self.prepared;
+        let sliding = |motion: &MeasuredMotion<'_>| motion.sliding();
         let columns = |velocity: &[f64], acceleration: &[f64]| {
-            let sliding = self.driven_by(velocity, acceleration, |motion| motion.sliding());
+            let sliding = self.driven_by(velocity, acceleration, sliding);
             [acceleration, velocity, &sliding, &vec![1.0; velocity.len()]]
                 .map(|column| p.compare(column))
                 .to_vec()
