@@ -33,7 +33,7 @@ const HOPEFUL: f64 = 0.4;
 const IN_TIME: f64 = 0.005;
 /// Another view contradicts an effect where its error grows by this factor on held-out data and on
 /// fitted data as well: one of them alone is a matter of a few windows.
-const CONTRADICTION: f64 = 1.05;
+pub(crate) const CONTRADICTION: f64 = 1.05;
 
 /// The state of a running discovery.
 pub(crate) struct Search<'a, F: ModelFamily + ?Sized> {
@@ -438,7 +438,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             screened,
             alpha: self.settings.alpha,
             interrupted: self.stopped(),
-            within_noise: !self.within_noise().is_empty(),
+            within_noise: self.within_noise(),
         }
     }
 }

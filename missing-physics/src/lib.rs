@@ -18,6 +18,7 @@ pub mod fit;
 pub mod generic;
 pub mod in_time;
 pub mod ladder;
+mod limits;
 pub mod metrics;
 pub mod noise;
 pub mod pairs;

@@ -7,11 +7,10 @@ use crate::family::ModelFamily;
 use crate::fit::Fit;
 use crate::generic;
 use crate::ladder::{self, Ladder};
+use crate::limits::limits;
 use crate::noise;
-use crate::quantity::quantity;
-use crate::report::{Discovery, Verdict, Where};
+use crate::report::{Discovery, SplitError, Verdict, Where};
 use crate::screen::Screened;
-use crate::shapes::amplitudes;
 use crate::split::Split;
 use crate::where_it_fails;
 
@@ -40,8 +39,8 @@ pub struct Evidence<'a> {
     pub alpha: f64,
     /// True where time ran out or the user stopped it.
     pub interrupted: bool,
-    /// True where another view of the last model shows no more than the noise of the measurement may.
-    pub within_noise: bool,
+    /// Views in which the last model leaves no more than the noise of the measurement may.
+    pub within_noise: BTreeMap<String, SplitError>,
 }
 
 /// The place at which structure stands out of the noise, if any.
@@ -92,7 +91,7 @@ pub fn report<F: ModelFamily + ?Sized>(
 
     let left = split.rms(&evidence.last.residual).validation;
     let structure = structure(family, &evidence.where_last, left, floor);
-    let moves = structure.is_some() && !evidence.within_noise;
+    let moves = structure.is_some() && evidence.within_noise.is_empty();
     let verdict = match (added.is_empty(), moves) {
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unexplained,
@@ -130,7 +129,7 @@ pub fn report<F: ModelFamily + ?Sized>(
             100.0 * place.share,
             place.note
         );
-        if evidence.within_noise {
+        if !evidence.within_noise.is_empty() {
             summary.push_str(" The motion shows none of it: that may be the sensor's own.");
         }
     }
@@ -163,7 +162,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         ambiguous,
         generic_term,
         noise_floor,
-        detection_limits: limits(family, evidence),
+        detection_limits: limits(family, &split, evidence),
         seed: 0,
         wall_s: 0.0,
         notes,
@@ -173,25 +172,4 @@ pub fn report<F: ModelFamily + ?Sized>(
         confirmation: None,
         plots: family.plots(&evidence.base.model, &evidence.last.model),
     }
-}
-
-/// The size of every effect not in the model at which it would have been found: that which removes
-/// as large a share of the error as the largest 5 % of placebos.
-fn limits<F: ModelFamily + ?Sized>(
-    family: &F,
-    evidence: &Evidence<'_>,
-) -> BTreeMap<String, String> {
-    let square: f64 = evidence.last.residual.iter().map(|r| r * r).sum();
-    evidence
-        .screened
-        .iter()
-        .filter(|candidate| candidate.p_value > evidence.alpha && candidate.leverage > 0.0)
-        .filter_map(|candidate| {
-            let term = &family.terms()[candidate.term];
-            let amplitude = amplitudes(term).first().copied()?;
-            let size = (candidate.needed.max(0.0) * square / candidate.leverage).sqrt();
-            let words = format!("{} {}", amplitude.name, quantity(size, &amplitude.unit));
-            Some((term.name.clone(), words))
-        })
-        .collect()
 }

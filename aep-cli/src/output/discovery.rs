@@ -46,7 +46,23 @@ pub fn verdict(discovery: &Discovery) -> String {
             let _ = writeln!(text, "   {}", dim(line));
         }
     }
+    if discovery.verdict == Verdict::NothingMissing {
+        text += &limits(discovery);
+    }
     text
+}
+
+/// How large each effect would have had to be.
+fn limits(discovery: &Discovery) -> String {
+    if discovery.detection_limits.is_empty() {
+        return String::new();
+    }
+    let mut table =
+        Table::new(&[("effect", Align::Left), ("would have been found above", Align::Left)]);
+    for (effect, size) in &discovery.detection_limits {
+        table.row([effect.clone(), size.clone()]);
+    }
+    format!("\n{}", table.text())
 }
 
 /// Lines of at most 98 characters.

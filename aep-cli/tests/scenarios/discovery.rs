@@ -78,7 +78,11 @@ fn where_nothing_is_hidden_nothing_is_found() {
     desk.challenge("nothing", 1, "c");
     let run = desk.aep("discover c/recording.csv --json out.json");
     assert!(run.done().contains("NOTHING IS MISSING"));
-    assert_eq!(desk.json("out.json")["verdict"], "nothing_missing");
+    let json = desk.json("out.json");
+    assert_eq!(json["verdict"], "nothing_missing");
+    // What size of each effect would have been seen.
+    assert!(run.out.contains("would have been found above"));
+    assert!(json["detection_limits"]["stribeck"].as_str().unwrap().starts_with("dF "));
 }
 
 #[test]
