@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 const MAGIC: &[u8; 8] = b"AEP-CKPT";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 20;
 
 /// Why a checkpoint could not be written or is refused.
@@ -47,6 +47,17 @@ pub enum CheckpointError {
         path: PathBuf,
         /// What was found.
         what: &'static str,
+    },
+    /// The checkpoint belongs to a run on another problem.
+    #[error(
+        "the checkpoint is of a run on another problem\n  checkpoint: {checkpoint}\n  this run:   {run}\n  \
+         resume with the problem that it was started with"
+    )]
+    OtherProblem {
+        /// Problem of the checkpoint ([`crate::Problem::identity`]).
+        checkpoint: String,
+        /// Problem of this run.
+        run: String,
     },
     /// The checkpoint belongs to another configuration.
     #[error(
@@ -141,6 +152,8 @@ fn array<const N: usize>(bytes: &[u8], from: usize) -> Option<[u8; N]> {
 /// The contents of a run's checkpoint.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct RunState {
+    /// [`crate::Problem::identity`] of the problem.
+    pub problem: String,
     /// Configuration, seed and domain of the run.
     pub signature: String,
     /// State of the algorithm.

@@ -153,4 +153,15 @@ impl Problem for TestProblem {
         };
         cost + self.noise(z)
     }
+
+    fn identity(&self) -> String {
+        let mut text = format!("{} in {} components", self.definition.name, self.optimum.len());
+        if self.shift.is_some() {
+            text += &format!(", optimum at {:?}", self.optimum);
+        }
+        if let Some(seed) = self.noise {
+            text += &format!(", noise of seed {seed}");
+        }
+        text
+    }
 }
