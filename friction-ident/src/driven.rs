@@ -125,7 +125,7 @@ impl<'a> MeasuredMotion<'a> {
     /// Mean direction of motion from half a step before each sample to half a step after: the sign of
     /// the velocity, except where it changes. A sign at the sample alone would be off by up to half a step,
     /// which at a reversal is a pulse of the whole friction.
-    fn sliding(&self) -> Vec<f64> {
+    pub(crate) fn sliding(&self) -> Vec<f64> {
         let mut mean: Vec<f64> = self.velocity.iter().map(|v| sign(*v)).collect();
         for segment in &self.segments {
             let v = &self.velocity[segment.clone()];

@@ -1,5 +1,6 @@
 //! Up the ladder: what the next rung is, and when there is none.
 
+use std::collections::BTreeMap;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -8,7 +9,7 @@ use crate::family::ModelFamily;
 use crate::fit::{self, Fit};
 use crate::ladder::Ladder;
 use crate::pairs::{self, Pair};
-use crate::report::Discovery;
+use crate::report::{Discovery, SplitError};
 use crate::screen::{self, Screened, Screening, weights};
 use crate::split::Split;
 use crate::tried::{self, Tried, as_good, square};
@@ -163,7 +164,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let tried = self.with_forms(tried);
         let mut tried = self.helpful(tried, self.settings.least_gain);
         let before = square(&self.fit);
-        let chosen = tried::simplest(&tried, before)?;
+        let at_bound = tried.first().is_some_and(|best| self.at_bound(best));
+        let chosen = tried::simplest(&tried, before, at_bound)?;
         let best = tried.swap_remove(chosen);
         let rivals =
             tried.iter().filter(|rival| as_good(rival, &best, before) && !self.at_bound(rival));
@@ -199,7 +201,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let before = self.split.rms(&self.fit.residual).validation;
         let enough = before * (1.0 - least).sqrt();
         tried.retain(|tried| {
-            self.split.rms(&tried.fit.residual).validation < enough && self.confirmed(&tried.fit)
+            self.split.rms(&tried.fit.residual).validation < enough
+                && self.confirmed(&tried.fit)
+                && self.stands_out(&tried.fit)
         });
         tried.sort_by(|a, b| a.square.total_cmp(&b.square));
         tried
@@ -330,6 +334,32 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         })
     }
 
+    /// Whether a fit is better in every view in which the present model leaves no more than noise may.
+    fn stands_out(&self, fit: &Fit) -> bool {
+        let noisy = self.within_noise();
+        let after = if noisy.is_empty() {
+            BTreeMap::new()
+        } else {
+            self.family.views(&fit.model, &self.split)
+        };
+        noisy.iter().all(|(name, before)| {
+            after.get(name).is_none_or(|error| {
+                CONTRADICTION * error.fit < before.fit
+                    && CONTRADICTION * error.validation < before.validation
+            })
+        })
+    }
+
+    /// Views in which the present model leaves no more than the noise of the measurement may.
+    fn within_noise(&self) -> BTreeMap<String, SplitError> {
+        let noise = self.family.view_noise();
+        let mut views = self.ladder.views();
+        views.retain(|name, error| {
+            noise.get(name).is_some_and(|noise| error.fit.max(error.validation) <= *noise)
+        });
+        views
+    }
+
     fn add(&mut self, tried: Tried) {
         let before = self.ladder.relative();
         self.fit = tried.fit;
@@ -408,6 +438,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             screened,
             alpha: self.settings.alpha,
             interrupted: self.stopped(),
+            within_noise: !self.within_noise().is_empty(),
         }
     }
 }

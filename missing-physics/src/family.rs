@@ -253,6 +253,14 @@ pub trait ModelFamily: Sync {
         BTreeMap::new()
     }
 
+    /// The error in a view up to which it may be the noise of the measurement alone, by the name of the error.
+    /// Where a model leaves no more, an effect is only added if it lowers that error too: a force that is
+    /// too small and too quick to be seen in the motion may be the sensor's own (the counts of an encoder,
+    /// differentiated twice, are a force that depends on the position).
+    fn view_noise(&self) -> BTreeMap<String, f64> {
+        BTreeMap::new()
+    }
+
     /// The residual of the model at the full rate of the recording, for spectra; nothing where the grid
     /// has all there is.
     fn full_rate(&self, _model: &Fitted) -> Option<FullRate> {

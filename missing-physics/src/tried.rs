@@ -4,7 +4,9 @@ use crate::fit::Fit;
 
 /// A rival's squared error is larger by at most this share.
 const RIVAL: f64 = 0.05;
-/// The same in standard errors of the difference.
+/// Beside a best candidate at a limit of its search, a rival removes at least this share of what that does.
+const NEARLY: f64 = 0.9;
+/// A rival's excess over the best in standard errors of the difference.
 const STANDARD_ERRORS: f64 = 1.0;
 /// Pieces of time for the standard error of a mean.
 const PIECES: usize = 15;
@@ -28,11 +30,18 @@ impl Tried {
     }
 }
 
-/// Of candidates, the best first, and those that are as good the one with the fewest parameters.
-pub fn simplest(tried: &[Tried], before: f64) -> Option<usize> {
+/// Of candidates, the best first, and those that are as good the one with the fewest parameters. A best
+/// one with a parameter at a limit of its search is a simpler law in disguise: one that removes
+/// nearly as much is as good.
+pub fn simplest(tried: &[Tried], before: f64, best_at_bound: bool) -> Option<usize> {
     let best = tried.first()?;
     let parameters = |k: &usize| tried[*k].fit.model.values.len();
-    (0..tried.len()).filter(|&k| k == 0 || as_good(&tried[k], best, before)).min_by_key(parameters)
+    let removes = |rival: &Tried| before - rival.square >= NEARLY * (before - best.square);
+    let good = |k: &usize| {
+        let rival = &tried[*k];
+        *k == 0 || as_good(rival, best, before) || (best_at_bound && removes(rival))
+    };
+    (0..tried.len()).filter(good).min_by_key(parameters)
 }
 
 /// Mean squared residual on all data.

@@ -40,6 +40,8 @@ pub struct Evidence<'a> {
     pub alpha: f64,
     /// True where time ran out or the user stopped it.
     pub interrupted: bool,
+    /// True where another view of the last model shows no more than the noise of the measurement may.
+    pub within_noise: bool,
 }
 
 /// The place at which structure stands out of the noise, if any.
@@ -90,9 +92,10 @@ pub fn report<F: ModelFamily + ?Sized>(
 
     let left = split.rms(&evidence.last.residual).validation;
     let structure = structure(family, &evidence.where_last, left, floor);
-    let verdict = match (added.is_empty(), structure) {
-        (true, None) => Verdict::NothingMissing,
-        (true, Some(_)) => Verdict::Unexplained,
+    let moves = structure.is_some() && !evidence.within_noise;
+    let verdict = match (added.is_empty(), moves) {
+        (true, false) => Verdict::NothingMissing,
+        (true, true) => Verdict::Unexplained,
         (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
         (false, _) => Verdict::Ambiguous,
     };
@@ -127,6 +130,9 @@ pub fn report<F: ModelFamily + ?Sized>(
             100.0 * place.share,
             place.note
         );
+        if evidence.within_noise {
+            summary.push_str(" The motion shows none of it: that may be the sensor's own.");
+        }
     }
     for choice in &ambiguous {
         let _ = write!(

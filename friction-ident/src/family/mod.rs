@@ -41,6 +41,8 @@ use crate::model::{MASS, Model, ModelError, address};
 const INVISIBLE: [&str; 1] = ["motor-gain"];
 /// Trial angles of a pendulum's rest on either side of the encoder's zero.
 const ANGLES: i32 = 32;
+/// What the lighter smoother does to the motion, as a multiple of what the heavier one does beyond it.
+const DOUBT: f64 = 1.0 / (preparation::SMOOTHER / preparation::HEAVIER - 1.0);
 /// Periods per sweep of a ripple's trials.
 const SWEEP: usize = 64;
 
@@ -223,10 +225,10 @@ impl FrictionFamily {
     /// around reversals and impacts, where the smoother matters, much; elsewhere hardly.
     fn disagreement(&self) -> Vec<f64> {
         let p = &self.prepared;
-        let signs =
-            |velocity: &[f64]| -> Vec<f64> { velocity.iter().map(|v| v.signum()).collect() };
+        let sliding = |motion: &MeasuredMotion<'_>| motion.sliding();
         let columns = |velocity: &[f64], acceleration: &[f64]| {
-            [acceleration, velocity, &signs(velocity), &vec![1.0; velocity.len()]]
+            let sliding = self.driven_by(velocity, acceleration, sliding);
+            [acceleration, velocity, &sliding, &vec![1.0; velocity.len()]]
                 .map(|column| p.compare(column))
                 .to_vec()
         };
@@ -237,7 +239,7 @@ impl FrictionFamily {
         let mut difference = vec![0.0; self.target.len()];
         for (k, factor) in simple.iter().enumerate() {
             for (value, (a, b)) in difference.iter_mut().zip(light[k].iter().zip(&heavy[k])) {
-                *value += factor * (a - b);
+                *value += DOUBT * factor * (a - b);
             }
         }
         (0..difference.len())
@@ -405,6 +407,10 @@ impl ModelFamily for FrictionFamily {
             |_| BTreeMap::new(),
             |model| views::views(&model, &self.recording, &self.time, split),
         )
+    }
+
+    fn view_noise(&self) -> BTreeMap<String, f64> {
+        BTreeMap::from([views::noise(self.axis, self.prepared.position_noise)])
     }
 
     fn full_rate(&self, fitted: &Fitted) -> Option<FullRate> {

@@ -12,9 +12,9 @@ use missing_physics::{Hold, Recording, RecordingError};
 use super::filter::{Kernel, LowPass};
 
 /// Cut-off of the position's smoother as a share of the sampling frequency.
-const SMOOTHER: f64 = 0.1;
+pub(super) const SMOOTHER: f64 = 0.1;
 /// A second, heavier smoother: where the two disagree, the motion is in doubt.
-const HEAVIER: f64 = 0.06;
+pub(super) const HEAVIER: f64 = 0.06;
 /// Default bandwidth of the comparison as a share of the sampling frequency.
 const BANDWIDTH: f64 = 0.05;
 /// Grid points per period of the bandwidth.
