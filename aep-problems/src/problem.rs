@@ -155,13 +155,10 @@ impl Problem for TestProblem {
     }
 
     fn identity(&self) -> String {
-        let mut text = format!("{} in {} components", self.definition.name, self.optimum.len());
-        if self.shift.is_some() {
-            text += &format!(", optimum at {:?}", self.optimum);
-        }
-        if let Some(seed) = self.noise {
-            text += &format!(", noise of seed {seed}");
-        }
-        text
+        let name = self.definition.name;
+        let shift = self.shift.as_ref().map(|_| format!(", optimum at {:?}", self.optimum));
+        let noise = self.noise.map(|seed| format!(", noise of seed {seed}"));
+        let [shift, noise] = [shift, noise].map(Option::unwrap_or_default);
+        format!("{name} in {} components{shift}{noise}", self.optimum.len())
     }
 }
