@@ -161,6 +161,7 @@ pub fn comparison(
         diagnosis: None,
         diagnosis_base: None,
         views: Vec::new(),
+        confirmation: None,
         plots: family.plots(&base.model, &last.model),
     };
     diagnosis::attach(family, base, last, seed, &mut discovery);

@@ -8,6 +8,7 @@ use missing_physics::data_check::DataCheck;
 use crate::html::{escape, section};
 use crate::plot;
 
+mod confirmation;
 mod data;
 mod doubts;
 mod ladder;
@@ -36,6 +37,7 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
     let sections = [
         verdict::head(discovery, source),
         ladder::section(discovery),
+        confirmation::section(discovery),
         where_it_fails::section(discovery),
         residual::section(discovery),
         curves(discovery),

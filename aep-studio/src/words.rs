@@ -1,5 +1,6 @@
 //! How a discovery is put into words, the same on the page and in the terminal.
 
+use missing_physics::confirm::{Confirmation, Confirmed};
 use missing_physics::diagnosis::Diagnosis;
 use missing_physics::quantity::{number, percent, quantity};
 use missing_physics::report::{Discovery, Estimate, Rung, SplitError, Verdict};
@@ -192,6 +193,47 @@ fn independence(diagnosis: &Diagnosis) -> Option<String> {
 fn at(value: f64) -> String {
     let text = p_value(value);
     if text.starts_with('<') { text } else { format!("= {text}") }
+}
+
+/// How to read the table of a confirmation.
+pub const CONFIRMATION: &str = "parameters as found, nothing fitted; 'gain anew': screened there with the \
+    model below it identified anew, 'place' among the likely";
+
+/// Headings of the table of a confirmation.
+pub fn confirmation_headings(discovery: &Discovery) -> Vec<String> {
+    let errors = errors(discovery).into_iter().map(|name| name.heading());
+    let rest = ["holds", "gain anew", "p-value", "place"].map(str::to_owned);
+    std::iter::once("rung".to_owned()).chain(errors).chain(rest).collect()
+}
+
+/// Its rows, one for each rung.
+pub fn confirmation_rows(discovery: &Discovery, confirmed: &Confirmed) -> Vec<Vec<String>> {
+    let names = errors(discovery);
+    let dash = || "-".to_owned();
+    let row = |(rung, here): (&Rung, &Confirmation)| {
+        let errors = names
+            .iter()
+            .map(|name| here.error.get(&name.key).map_or_else(dash, |error| name.value(*error)));
+        let holds = here.holds.map_or_else(dash, |holds| yes(holds).to_owned());
+        let gain = here.gain.map_or_else(dash, percent);
+        let p = here.p_value.map_or_else(dash, p_value);
+        let place = here.place.map_or_else(dash, |place| place.to_string());
+        std::iter::once(self::rung(rung)).chain(errors).chain([holds, gain, p, place]).collect()
+    };
+    discovery.ladder.iter().zip(&confirmed.rungs).map(row).collect()
+}
+
+fn yes(holds: bool) -> &'static str {
+    if holds { "yes" } else { "no" }
+}
+
+/// What a confirmation says of each effect.
+pub fn confirmations(confirmed: &Confirmed) -> Vec<String> {
+    let said = |here: &Confirmation| {
+        let said = if here.holds? { "confirmed" } else { "not confirmed" };
+        Some(format!("{} is {said} by the other recordings.", here.added.as_ref()?))
+    };
+    confirmed.rungs.iter().filter_map(said).collect()
 }
 
 #[cfg(test)]

@@ -34,6 +34,15 @@ pub struct Confirmation {
     pub place: Option<usize>,
 }
 
+/// A ladder on recordings that had no part in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Confirmed {
+    /// Names of the recordings.
+    pub recording: String,
+    /// One for each rung.
+    pub rungs: Vec<Confirmation>,
+}
+
 /// Every rung of `ladder`, found on another family of the same terms, on `family`; `settings` are those
 /// that found it.
 ///

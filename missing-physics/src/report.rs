@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::confirm::Confirmed;
 use crate::diagnosis::Diagnosis;
 use crate::metrics::SplitMetrics;
 use crate::views::View;
@@ -173,6 +174,9 @@ pub struct Discovery {
     /// describes it.
     #[serde(default)]
     pub generic_term: Option<String>,
+    /// What other recordings say of the ladder, where there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confirmation: Option<Confirmed>,
     /// Size of the error that no model can remove, by quantity.
     pub noise_floor: BTreeMap<String, f64>,
     /// Size of each effect that would have been seen, in words, by effect.

@@ -170,6 +170,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         diagnosis: None,
         diagnosis_base: None,
         views: Vec::new(),
+        confirmation: None,
         plots: family.plots(&evidence.base.model, &evidence.last.model),
     }
 }

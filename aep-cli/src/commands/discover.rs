@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use missing_physics::confirm::Confirmed;
 use missing_physics::data_check::check;
 use missing_physics::report::Verdict;
 use missing_physics::{Discovery, discover};
@@ -81,7 +82,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth)?;
     progress.say("fitting the base model");
-    let discovery = discover(&family, &settings, &mut progress)?;
+    let mut discovery = discover(&family, &settings, &mut progress)?;
     let mut more = Vec::new();
     let mut confirmed = String::new();
     if let Some(others) = &others {
@@ -89,9 +90,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         let other = steps::family(&others.recording, args.bandwidth)?.with_stroke_of(&family);
         steps::same_axes(&family, &other)?;
         let rungs = missing_physics::confirm::on(&other, &discovery.ladder, &settings)?;
-        confirmed = output::confirmation(&discovery, &rungs, others.recording.name());
-        let name = others.recording.name();
-        more.push(("confirmation", serde_json::json!({ "recording": name, "rungs": rungs })));
+        let found = Confirmed { recording: others.recording.name().to_owned(), rungs };
+        confirmed = output::confirmation(&discovery, &found);
+        discovery.confirmation = Some(found);
     }
     let mut proposal = Proposal::default();
     if let Some(path) = &args.experiment {

@@ -173,10 +173,12 @@ fn a_servo_lacks_load_friction_at_one_gain_and_the_other_gain_confirms_it() {
         let desk = Desk::new();
         let run = desk.aep(&format!(
             "discover {data} --force duty*v_in_V --base coulomb,viscous,gravity-pendulum \
-             --validate {others} --json out.json"
+             --validate {others} --json out.json --html out.html"
         ));
         assert!(run.done().contains("switched off"));
-        assert!(run.out.contains("load-friction is confirmed"));
+        for said in [run.out.clone(), desk.read("out.html")] {
+            assert!(said.contains("load-friction is confirmed"));
+        }
         let json = desk.json("out.json");
         assert_eq!(json["added"][0], "load-friction");
         assert_eq!(json["ranking"][0][0]["effect"], "load-friction");
