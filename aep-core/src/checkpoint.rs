@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 const MAGIC: &[u8; 8] = b"AEP-CKPT";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 20;
 
 /// Why a checkpoint could not be written or is refused.
@@ -48,10 +48,23 @@ pub enum CheckpointError {
         /// What was found.
         what: &'static str,
     },
+    /// The checkpoint belongs to a run on another problem.
+    #[error(
+        "the checkpoint is of a run on another problem\n  checkpoint: {checkpoint}\n  this run:   {run}\n  \
+         resume with the problem that it was started with"
+    )]
+    OtherProblem {
+        /// Problem of the checkpoint ([`crate::Problem::identity`]).
+        checkpoint: String,
+        /// Problem of this run.
+        run: String,
+    },
     /// The checkpoint belongs to another configuration.
     #[error(
-        "the checkpoint belongs to another run\n  checkpoint: {checkpoint}\n  this run:   {run}\n  \
-         resume with the configuration and the seed it was started with"
+        "the checkpoint belongs to another run\n  checkpoint: {}\n  this run:   {}\n  \
+         resume with the configuration and the seed it was started with",
+        differing(.checkpoint, .run),
+        differing(.run, .checkpoint)
     )]
     OtherRun {
         /// Configuration in the checkpoint.
@@ -68,6 +81,13 @@ pub enum CheckpointError {
     /// The state could not be encoded or decoded.
     #[error("the state of the run cannot be encoded or decoded: {0}")]
     Encoding(#[from] postcard::Error),
+}
+
+/// The parts of a configuration that another one does not have.
+fn differing(of: &str, other: &str) -> String {
+    let others: Vec<&str> = other.split(", ").collect();
+    let own: Vec<&str> = of.split(", ").filter(|part| !others.contains(part)).collect();
+    if own.is_empty() { of.into() } else { own.join(", ") }
 }
 
 /// Bytes of `state`, exact to the bit.
@@ -141,6 +161,8 @@ fn array<const N: usize>(bytes: &[u8], from: usize) -> Option<[u8; N]> {
 /// The contents of a run's checkpoint.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct RunState {
+    /// [`crate::Problem::identity`] of the problem.
+    pub problem: String,
     /// Configuration, seed and domain of the run.
     pub signature: String,
     /// State of the algorithm.
@@ -152,6 +174,17 @@ pub(crate) struct RunState {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn another_run_is_told_by_what_differs() {
+        let run = |seed: u64| format!("aep, seed {seed}, population 40, f64, Domain {{ a, b }}");
+        let error = CheckpointError::OtherRun { checkpoint: run(1), run: run(2) };
+        let text = error.to_string();
+        assert!(
+            text.contains("checkpoint: seed 1\n") && text.contains("run:   seed 2\n"),
+            "{text}"
+        );
+    }
 
     #[test]
     fn every_truncation_and_every_flipped_byte_is_refused() {

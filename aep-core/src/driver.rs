@@ -139,8 +139,8 @@ impl<'a, T: Scalar> Driver<'a, T> {
         self.go_on(algorithm, problem, ledger)
     }
 
-    /// Continues the run saved in `path`. `algorithm` must be built as for that run; the result
-    /// equals that of the uninterrupted run to the bit. Budgets count from the run's beginning.
+    /// Continues the run saved in `path`. `algorithm` must be built as for that run, and `problem`
+    /// must be the same as far as [`Problem::identity`] tells; the result equals that of the uninterrupted run to the bit. Budgets count from the run's beginning.
     pub fn resume(
         &mut self,
         algorithm: &mut dyn Algorithm<T>,
@@ -148,6 +148,11 @@ impl<'a, T: Scalar> Driver<'a, T> {
         path: &Path,
     ) -> Result<Outcome<T>, RunError> {
         let saved: RunState = checkpoint::read(path)?;
+        let run = problem.identity();
+        if saved.problem != run {
+            let checkpoint = saved.problem;
+            return Err(CheckpointError::OtherProblem { checkpoint, run }.into());
+        }
         let run = algorithm.signature();
         if saved.signature != run {
             return Err(CheckpointError::OtherRun { checkpoint: saved.signature, run }.into());
@@ -183,12 +188,12 @@ impl<'a, T: Scalar> Driver<'a, T> {
             run.count_errors(problem, errors_before, &before);
             run.note_progress(algorithm, self.budget.stagnation.map_or(0.0, |s| s.tolerance));
             self.observe(algorithm, &run);
-            if let Some(error) = self.save_when_due(algorithm, &run) {
+            if let Some(error) = self.save_when_due(algorithm, problem, &run) {
                 checkpoint_error = Some(error.to_string());
             }
         };
         if let Some((path, _)) = &self.checkpoint
-            && let Err(error) = run.save(algorithm, path)
+            && let Err(error) = run.save(algorithm, problem, path)
         {
             checkpoint_error = Some(error.to_string());
         }
@@ -224,10 +229,15 @@ impl<'a, T: Scalar> Driver<'a, T> {
 }
 
 impl<T: Scalar> Driver<'_, T> {
-    fn save_when_due(&self, algorithm: &dyn Algorithm<T>, run: &Run<T>) -> Option<CheckpointError> {
+    fn save_when_due(
+        &self,
+        algorithm: &dyn Algorithm<T>,
+        problem: &dyn Problem<T>,
+        run: &Run<T>,
+    ) -> Option<CheckpointError> {
         let (path, every) = self.checkpoint.as_ref()?;
         let due = algorithm.generation().is_multiple_of(*every);
-        if due { run.save(algorithm, path).err() } else { None }
+        if due { run.save(algorithm, problem, path).err() } else { None }
     }
 }
 

@@ -53,6 +53,12 @@ pub trait Problem<T: Scalar = f64>: Sync {
     fn errors(&self) -> Errors {
         Errors::default()
     }
+
+    /// What tells this problem from others of the same domain: its name, its data, its settings. A
+    /// checkpoint of a run on another problem is refused; nothing is told apart by default.
+    fn identity(&self) -> String {
+        String::new()
+    }
 }
 
 /// How many evaluations ended in an error, and what the first one said.
@@ -150,5 +156,9 @@ impl<T: Scalar, P: Problem<T> + ?Sized> Problem<T> for &P {
 
     fn errors(&self) -> Errors {
         (**self).errors()
+    }
+
+    fn identity(&self) -> String {
+        (**self).identity()
     }
 }

@@ -89,8 +89,14 @@ impl<T: Scalar> Run<T> {
         }
     }
 
-    pub fn save(&self, algorithm: &dyn Algorithm<T>, path: &Path) -> Result<(), CheckpointError> {
+    pub fn save(
+        &self,
+        algorithm: &dyn Algorithm<T>,
+        problem: &dyn Problem<T>,
+        path: &Path,
+    ) -> Result<(), CheckpointError> {
         let state = RunState {
+            problem: problem.identity(),
             signature: algorithm.signature(),
             algorithm: algorithm.save()?,
             ledger: checkpoint::encode(&self.ledger)?,

@@ -87,6 +87,7 @@ proptest! {
         let mut optimizer = method.start(&Start::new(&domain, seed)).unwrap();
         let mut best = f64::INFINITY;
         for _ in 0..40 {
+            prop_assert!(optimizer.ask().rows().all(|x| domain.contains(x)));
             step(&mut *optimizer, |x| rough(x, salt));
             if let Some(found) = optimizer.best() {
                 prop_assert!(found.cost <= best);

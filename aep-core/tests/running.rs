@@ -13,6 +13,23 @@ fn rosenbrock() -> impl Problem {
     FnProblem::new(domain, |x: &[f64]| 100.0 * (x[0] * x[0] - x[1]).powi(2) + (1.0 - x[0]).powi(2))
 }
 
+/// The same problem under a name.
+struct Named<P>(P);
+
+impl<P: Problem> Problem for Named<P> {
+    fn domain(&self) -> &Domain {
+        self.0.domain()
+    }
+
+    fn evaluate(&self, x: &[f64]) -> f64 {
+        self.0.evaluate(x)
+    }
+
+    fn identity(&self) -> String {
+        "valley".into()
+    }
+}
+
 fn methods() -> Vec<Box<dyn Method>> {
     vec![
         Box::new(Aep::paper()),
@@ -86,6 +103,9 @@ fn a_checkpoint_of_another_run_is_refused() {
     let other = Aep::paper().with_beta(30.0, 0.3);
     let error = driver.resume(&mut *start(&other, &problem), &problem, &path).unwrap_err();
     assert!(matches!(error, RunError::Checkpoint(CheckpointError::OtherRun { .. })), "{error}");
+    let named = Named(rosenbrock());
+    let error = driver.resume(&mut *start(&Aep::paper(), &named), &named, &path).unwrap_err();
+    assert!(matches!(error, RunError::Checkpoint(CheckpointError::OtherProblem { .. })), "{error}");
     std::fs::write(&path, b"z1,z2\n1,2\n").unwrap();
     let error = driver.resume(&mut *start(&other, &problem), &problem, &path).unwrap_err();
     assert!(error.to_string().contains("not a checkpoint"), "{error}");

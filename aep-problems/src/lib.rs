@@ -82,6 +82,16 @@ mod tests {
     }
 
     #[test]
+    fn aep_finds_the_deepest_foxhole_in_every_trial_with_both_of_the_papers_settings() {
+        let figure = paper::find("fig6").unwrap();
+        for (beta1, beta2) in [(5.0, 0.05), (30.0, 0.3)] {
+            let aep = aep_core::Aep::paper().with_beta(beta1, beta2);
+            let summary = figure.run(&aep, 50, 1).unwrap().summary(figure.target);
+            assert_eq!(summary.successes, 50, "{beta1} {beta2}");
+        }
+    }
+
+    #[test]
     fn names_are_unique() {
         for (i, definition) in ALL.iter().enumerate() {
             assert!(ALL[..i].iter().all(|other| other.name != definition.name));

@@ -153,4 +153,12 @@ impl Problem for TestProblem {
         };
         cost + self.noise(z)
     }
+
+    fn identity(&self) -> String {
+        let name = self.definition.name;
+        let shift = self.shift.as_ref().map(|_| format!(", optimum at {:?}", self.optimum));
+        let noise = self.noise.map(|seed| format!(", noise of seed {seed}"));
+        let [shift, noise] = [shift, noise].map(Option::unwrap_or_default);
+        format!("{name} in {} components{shift}{noise}", self.optimum.len())
+    }
 }

@@ -4,6 +4,9 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::Arc;
+use std::time::Duration;
 
 use aep_problems::paper::Claim;
 
@@ -82,23 +85,19 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     std::fs::create_dir_all(&args.output).map_err(|error| {
         Failure::bad_input(format!("cannot make the folder: {error}")).in_file(&args.output)
     })?;
-    let conditions = Conditions {
+    let conditions = Arc::new(Conditions {
         directory: args.output.clone(),
         trials: args.trials as usize,
         seed: args.seed,
         readings: !args.no_readings,
-    };
+    });
     let progress = Progress::new(global.quiet);
     let mut rows = Vec::new();
     let mut files = Vec::new();
     let mut kept = Vec::new();
-    let (stop, count) = (stop::flag(), chosen.len());
-    for (done, figure) in chosen.into_iter().enumerate() {
-        if stop.load(Ordering::Relaxed) {
-            let what = format!("{done} of {count} figures are made");
-            let hint = "the same command goes on where this one ended";
-            return Err(Failure::interrupted(&what).with_hint(hint));
-        }
+    let count = chosen.len();
+    let mut done = 0;
+    for figure in chosen {
         progress.say(format!("{}: {}", figure.name, figure.title));
         let made = match reproduce_record::kept(figure.name, &conditions) {
             Some(made) if !args.again => {
@@ -106,15 +105,19 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
                 made
             }
             _ => {
-                let made = (figure.make)(figure.name, &conditions)?;
+                let Some(made) = make(figure, &conditions)? else { break };
                 reproduce_record::keep(figure.name, &conditions, &made)?;
                 made
             }
         };
+        done += 1;
         rows.extend(made.claims.into_iter().map(|claim| (figure.name, claim)));
         files.extend(made.files);
     }
     drop(progress);
+    if done == 0 {
+        return Err(Failure::interrupted("no figure had been made"));
+    }
     let tables = [
         ("claims.csv", reproduce_table::csv(&rows)),
         ("table.md", reproduce_table::markdown(&rows)),
@@ -123,7 +126,38 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     for (name, text) in tables {
         keep(&mut files, &args.output.join(name), &text)?;
     }
-    if global.quiet { Ok(()) } else { output::print(&report(&rows, &kept, &files)) }
+    if !global.quiet {
+        output::print(&report(&rows, &kept, &files))?;
+    }
+    if done < count {
+        let what = format!("{done} of {count} figures are made and in the table");
+        let hint = "the same command goes on where this one ended";
+        return Err(Failure::interrupted(&what).with_hint(hint));
+    }
+    Ok(())
+}
+
+/// Makes a figure; nothing after Ctrl-C, which does not wait for the minutes that a figure can take:
+/// files are written whole or not at all, and without its record a figure is made again.
+fn make(figure: &'static Figure, conditions: &Arc<Conditions>) -> Result<Option<Made>, Failure> {
+    const LOOK: Duration = Duration::from_millis(50);
+    let stop = stop::flag();
+    let (tell, told) = mpsc::channel();
+    let conditions = Arc::clone(conditions);
+    std::thread::spawn(move || {
+        // Nobody listens any more after Ctrl-C.
+        let _ = tell.send((figure.make)(figure.name, &conditions));
+    });
+    while !stop.load(Ordering::Relaxed) {
+        match told.recv_timeout(LOOK) {
+            Ok(made) => return made.map(Some),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(Failure::failed(format!("{} ended in a panic", figure.name)));
+            }
+        }
+    }
+    Ok(None)
 }
 
 fn chosen(names: &[String]) -> Result<Vec<&'static Figure>, Failure> {

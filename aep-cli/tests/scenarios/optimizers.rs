@@ -87,6 +87,22 @@ fn ctrl_c_ends_a_comparison_and_reports_the_trials_that_had_ended() {
     assert!(0 < rows && rows < 100_000, "{rows} trials");
 }
 
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_figures_that_are_made() {
+    let desk = Desk::new();
+    // The first takes a fraction of a second, the other one minutes.
+    let line = "reproduce fig2 fig12 -o paper --no-readings --trials 5";
+    let run = desk.interrupted(line, 3.0);
+    assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
+    assert!(run.err.contains("1 of 2 figures"), "{}", run.err);
+    let table = desk.read("paper/table.md");
+    assert!(table.contains("| fig2 | AEP |") && !table.contains("fig12"), "{table}");
+    assert!(desk.read("paper/fig2.svg").starts_with("<svg"));
+    let again = desk.aep("reproduce fig2 -o paper --no-readings --trials 5");
+    assert!(again.done().contains("kept fig2"));
+}
+
 #[test]
 fn a_saved_run_goes_on_to_the_same_end_and_a_broken_file_is_refused() {
     let desk = Desk::new();
@@ -105,6 +121,12 @@ fn a_saved_run_goes_on_to_the_same_end_and_a_broken_file_is_refused() {
     desk.aep(&format!("{line} 60 --resume run.ckpt")).refused(&["not a checkpoint"]);
     desk.write("run.ckpt", &bytes);
     desk.aep(&format!("{line} 60 --seed 2 --resume run.ckpt")).refused(&["another run", "seed"]);
+    for other in ["griewank --dimension 6", "powers --dimension 5", "powers --dimension 6 --shift"]
+    {
+        let resumed =
+            desk.aep(&format!("optimize {other} --algorithm aep-practical --resume run.ckpt"));
+        resumed.refused(&["another problem", "powers in 6 components"]);
+    }
     desk.aep("optimize f1 --algorithm aep,de --trace a.csv").refused(&["single run"]);
     desk.aep("optimize f1 --algorithm aep --trace a.txt").refused(&[".csv or a .jsonl"]);
 }

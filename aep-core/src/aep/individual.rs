@@ -1,6 +1,7 @@
 //! Rule 1: what an AEP individual remembers.
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use crate::random::{Stream, coin};
 use crate::{Individual, Scalar, wide};
@@ -8,7 +9,8 @@ use crate::{Individual, Scalar, wide};
 /// Search direction per component and age.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AepIndividual {
-    directions: Vec<i8>,
+    /// In place for as many components as most tasks have: individuals lie side by side in memory.
+    directions: SmallVec<[i8; 16]>,
     age: u32,
 }
 

@@ -143,13 +143,12 @@ impl Aep {
     }
 
     fn check(&self) -> Result<(), ConfigError> {
-        let hint = "must be positive and finite";
-        for (setting, value) in [("beta1", self.beta1), ("beta2", self.beta2)] {
-            let valid = value > 0.0 && value.is_finite();
-            ConfigError::require(valid, "aep", setting, value, hint)?;
-        }
         let check =
             |valid, setting, value, hint| ConfigError::require(valid, "aep", setting, value, hint);
+        for (setting, value) in [("beta1", self.beta1), ("beta2", self.beta2)] {
+            let valid = value > 0.0 && value.is_finite();
+            check(valid, setting, value, "must be positive and finite")?;
+        }
         match self.step_scale {
             StepScale::AboveReference(value) => {
                 check(value.is_finite(), "reference", value, "must be finite")?;
