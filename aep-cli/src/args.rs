@@ -10,4 +10,4 @@ pub use control::{LoopArgs, ReferenceArgs};
 pub use data::{DataArgs, MappingArgs, words};
 pub use effects::{EffectNames, add_files, known, library};
 pub use horizon::{Compared, TimeArgs, TimeTask};
-pub use run::{OutputArgs, RunArgs};
+pub use run::{LimitArgs, OutputArgs, RunArgs};

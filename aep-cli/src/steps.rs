@@ -20,10 +20,14 @@ use missing_physics::{
 
 use crate::args::library;
 use crate::failure::Failure;
+use crate::stop::Watch;
 
 mod in_time;
+mod stoppable;
 
 pub use in_time::identify_in_time;
+
+use stoppable::Stoppable;
 
 /// A name and what makes the optimizer.
 type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
@@ -31,6 +35,9 @@ type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
 /// Optimizers by name.
 pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
+
+/// What a comparison that ended early says.
+pub const STOPPED: &str = "stopped early: this is what was found until then, and what takes long was left out";
 
 /// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
@@ -56,16 +63,18 @@ fn split(family: &FrictionFamily) -> (Split, Vec<f64>) {
     (split, fitted)
 }
 
-/// Identifies a model of these effects on the fitted blocks.
+/// Identifies a model of these effects on the fitted blocks; once `watch` is over the best one so far is
+/// taken.
 pub fn identify(
     family: &FrictionFamily,
     effects: &[String],
-    method: &dyn Method<f64>,
-    seed: u64,
+    (method, seed): (&dyn Method<f64>, u64),
+    watch: Watch,
 ) -> Result<(Fit, usize), Failure> {
     let terms = terms(family, effects)?;
     let (_, fitted) = split(family);
-    let found = search::identify_by(family, &terms, &fitted, seed, method);
+    let method = Stoppable { method, watch };
+    let found = search::identify_by(family, &terms, &fitted, seed, &method);
     Ok((found.fit, found.evaluations))
 }
 
@@ -120,16 +129,19 @@ pub fn rung(family: &FrictionFamily, fit: &Fit, added: Option<String>) -> Rung {
 }
 
 /// What a fit looks like on this data, as a discovery that looks for nothing: errors, where it
-/// fails, noise, curves.
+/// fails, noise, curves. Once `watch` is over the parts that take long are left out.
 pub fn comparison(
     family: &FrictionFamily,
-    base: &Fit,
-    last: &Fit,
+    (base, last): (&Fit, &Fit),
     rungs: Vec<Rung>,
     seed: u64,
+    watch: Watch,
 ) -> Discovery {
     let motion = family.motion();
     let view = |fit: &Fit| {
+        if watch.is_over() {
+            return Vec::new();
+        }
         let weights = weights(family.doubt(), &fit.residual);
         coordinates(
             family,
@@ -164,7 +176,12 @@ pub fn comparison(
         confirmation: None,
         plots: family.plots(&base.model, &last.model),
     };
-    diagnosis::attach(family, base, last, seed, &mut discovery);
+    if !watch.is_over() {
+        diagnosis::attach(family, base, last, seed, &mut discovery);
+    }
+    if watch.is_over() {
+        discovery.notes.push(STOPPED.to_owned());
+    }
     discovery
 }
 

@@ -1,8 +1,9 @@
 //! Ctrl-C: the first one asks for an end after the present step, the second one ends at once.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
-use crate::failure::INTERRUPTED;
+use crate::failure::{Failure, INTERRUPTED};
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
@@ -16,4 +17,42 @@ pub fn flag() -> &'static AtomicBool {
         eprintln!("\nstopping after this step; what was found is kept (Ctrl-C again ends at once)");
     });
     &STOP
+}
+
+/// What ends a command early: Ctrl-C, or the end of its time.
+#[derive(Clone, Copy, Debug)]
+pub struct Watch {
+    flag: &'static AtomicBool,
+    until: Option<Instant>,
+}
+
+impl Watch {
+    /// Watches Ctrl-C and, where there is one, a limit that begins now.
+    pub fn new(limit: Option<Duration>) -> Self {
+        Self { flag: flag(), until: limit.and_then(|limit| Instant::now().checked_add(limit)) }
+    }
+
+    /// The flag that Ctrl-C sets.
+    pub fn flag(self) -> &'static AtomicBool {
+        self.flag
+    }
+
+    /// Time that is left; none where there is no limit.
+    pub fn left(self) -> Option<Duration> {
+        self.until.map(|until| until.saturating_duration_since(Instant::now()))
+    }
+
+    /// Whether nothing new is to begin.
+    pub fn is_over(self) -> bool {
+        self.flag.load(Ordering::Relaxed) || self.left().is_some_and(|left| left.is_zero())
+    }
+
+    /// The end of a command that has shown and saved what it has: a failure after Ctrl-C, so that
+    /// scripts can tell; a limit is no failure.
+    pub fn end(self) -> Result<(), Failure> {
+        if self.flag.load(Ordering::Relaxed) {
+            return Err(Failure::interrupted("what was found so far is what is reported"));
+        }
+        Ok(())
+    }
 }

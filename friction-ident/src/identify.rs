@@ -245,6 +245,28 @@ impl<'a> Identification<'a> {
             .collect()
     }
 
+    /// Mean square by which the motion of `x` differs where every step is divided into `parts`: what
+    /// the integration adds to the errors.
+    fn step_error(&self, x: &[f64], parts: usize) -> f64 {
+        let full = [self.full(x)];
+        let (coarse, fine) = match &self.comparison {
+            Comparison::FreeRun(run) => (run.residuals(&full), run.finer(parts).residuals(&full)),
+            Comparison::Windows(windows) => {
+                (windows.residuals(&full), windows.finer(parts).residuals(&full))
+            }
+        };
+        let pairs = coarse[0].iter().zip(&fine[0]);
+        pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / coarse[0].len().max(1) as f64
+    }
+
+    /// Mean sampling time, s.
+    fn sample_time(&self) -> f64 {
+        match &self.comparison {
+            Comparison::FreeRun(run) => run.sample_time(),
+            Comparison::Windows(windows) => windows.sample_time(),
+        }
+    }
+
     /// Mean square of the recorded motion, and of what its encoder cannot resolve.
     fn scales(&self) -> (f64, f64) {
         match &self.comparison {

@@ -1,7 +1,5 @@
 //! How a model is compared by simulating it.
 
-use std::time::Duration;
-
 use clap::ValueEnum;
 use friction_ident::{Horizon, Pd, WindowOptions};
 
@@ -53,9 +51,6 @@ pub struct TimeArgs {
     /// Individuals of the search
     #[arg(long, value_name = "N", default_value_t = 60)]
     population: usize,
-    /// End after this many seconds; what was found is kept
-    #[arg(long, value_name = "S")]
-    time_limit: Option<f64>,
 }
 
 /// A comparison by simulation and the budget of its search.
@@ -66,19 +61,13 @@ pub struct TimeTask {
     pub generations: u64,
     /// Individuals.
     pub population: usize,
-    /// None for no limit.
-    pub time_limit: Option<Duration>,
 }
 
 impl TimeArgs {
     /// The task these arguments describe.
     pub fn task(&self, compared: Compared) -> Result<TimeTask, Failure> {
         let (window, max_step) = (self.window, self.max_step);
-        for (name, value) in [
-            ("--window", Some(window)),
-            ("--max-step", max_step),
-            ("--time-limit", self.time_limit),
-        ] {
+        for (name, value) in [("--window", Some(window)), ("--max-step", max_step)] {
             if value.is_some_and(|value| !(value > 0.0 && value.is_finite())) {
                 return Err(Failure::bad_input(format!(
                     "{name} must be a number of seconds above 0"
@@ -106,8 +95,7 @@ impl TimeArgs {
                 })
             }
         };
-        let time_limit = self.time_limit.map(Duration::from_secs_f64);
         let (generations, population) = (self.generations, self.population);
-        Ok(TimeTask { horizon, generations, population, time_limit })
+        Ok(TimeTask { horizon, generations, population })
     }
 }

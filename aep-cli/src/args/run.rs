@@ -7,7 +7,7 @@ use missing_physics::Settings;
 
 use super::EffectNames;
 use crate::failure::Failure;
-use crate::stop;
+use crate::stop::{self, Watch};
 
 /// How a search runs.
 #[derive(clap::Args, Clone, Debug)]
@@ -43,6 +43,21 @@ impl RunArgs {
             time_limit: self.time_limit,
             ..Settings::default()
         })
+    }
+}
+
+/// When a command ends early.
+#[derive(clap::Args, Clone, Debug)]
+pub struct LimitArgs {
+    /// Begin nothing new after this many seconds; what was found is kept
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
+    time_limit: Option<Duration>,
+}
+
+impl LimitArgs {
+    /// Watches Ctrl-C and the limit, which begins now.
+    pub fn watch(&self) -> Watch {
+        Watch::new(self.time_limit)
     }
 }
 

@@ -9,11 +9,12 @@ use missing_physics::fit::Fit;
 use missing_physics::views::View;
 
 use crate::app::Global;
-use crate::args::{DataArgs, OutputArgs};
+use crate::args::{DataArgs, LimitArgs, OutputArgs};
 use crate::failure::Failure;
 use crate::output::{self, heading};
 use crate::report::{Kind, Report};
-use crate::steps;
+use crate::steps::{self, STOPPED};
+use crate::stop::Watch;
 
 /// Compare a model with a measurement: errors in several views and where it fails
 ///
@@ -34,6 +35,8 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
+    limit: LimitArgs,
+    #[command(flatten)]
     results: OutputArgs,
 }
 
@@ -47,6 +50,7 @@ Examples:
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let models: Vec<Model> =
         args.model.iter().map(|path| steps::read_model(path)).collect::<Result<_, _>>()?;
+    let watch = args.limit.watch();
     let loaded = args.data.read()?;
     let family = steps::family(&loaded.recording, args.bandwidth)?;
     let fits: Vec<Fit> =
@@ -56,11 +60,16 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     };
     let rung = steps::rung(&family, fit, None);
     let effects = rung.effects.join(" + ");
-    let mut discovery = steps::comparison(&family, fit, fit, vec![rung], args.seed);
-    let (views, mut notes) = side_by_side(&family, &args.model, &fits)?;
+    let mut discovery = steps::comparison(&family, (fit, fit), vec![rung], args.seed, watch);
+    let (views, mut notes) = side_by_side(&family, &args.model, &fits, watch)?;
     discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
     let warnings = output::warnings(&views, &notes);
     notes.splice(0..0, missing_physics::views::disagreements(&views));
+    notes.append(&mut discovery.notes);
+    let stopped = watch.is_over();
+    if stopped && !notes.iter().any(|note| note == STOPPED) {
+        notes.push(STOPPED.to_owned());
+    }
     discovery.notes = notes;
     let data = check(&loaded.recording);
     let report = Report {
@@ -72,7 +81,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     };
     let files = report.save(&args.results)?;
     if global.quiet || args.results.own_stdout() {
-        return Ok(());
+        return watch.end();
     }
     let remains = discovery.diagnosis.as_ref().map_or_else(String::new, |diagnosis| {
         output::tests(diagnosis) + "\n" + &output::lines(&discovery, diagnosis)
@@ -88,8 +97,10 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Is what remains noise?")
         + &remains
+        + &(if stopped { output::note(STOPPED) } else { String::new() })
         + &files;
-    output::print(&text)
+    output::print(&text)?;
+    watch.end()
 }
 
 /// The name of a model's file with its views.
@@ -100,9 +111,13 @@ fn side_by_side(
     family: &FrictionFamily,
     paths: &[PathBuf],
     fits: &[Fit],
+    watch: Watch,
 ) -> Result<(Vec<Named>, Vec<String>), Failure> {
     let (mut views, mut notes) = (Vec::new(), Vec::new());
     for (path, fit) in paths.iter().zip(fits) {
+        if watch.is_over() {
+            break;
+        }
         let all = family.side_by_side(&fit.model)?;
         views.push((name(path), all.views));
         notes.extend(all.notes.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use missing_physics::data_check::check;
 
 use crate::app::Global;
-use crate::args::{DataArgs, OutputArgs, known};
+use crate::args::{DataArgs, LimitArgs, OutputArgs, known};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
@@ -34,6 +34,8 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
+    limit: LimitArgs,
+    #[command(flatten)]
     results: OutputArgs,
 }
 
@@ -52,6 +54,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             .with_hint("'aep suggest' tells which other effect would help"));
     }
     effects.push(added.clone());
+    let watch = args.limit.watch();
     let loaded = args.data.read()?;
     let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
@@ -60,14 +63,14 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let before = steps::as_given(&family, &model)?;
     progress.say(format!("refitting with {added}"));
     let method = steps::method("aep")?;
-    let (after, _) = steps::identify(&family, &effects, &*method, args.seed)?;
+    let (after, _) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
     let rungs = vec![
         steps::rung(&family, &before, None),
         steps::rung(&family, &after, Some(added.clone())),
     ];
     let last = rungs[1].clone();
     let extended = steps::model(&family, &last)?;
-    let discovery = steps::comparison(&family, &before, &after, rungs, args.seed);
+    let discovery = steps::comparison(&family, (&before, &after), rungs, args.seed, watch);
     drop(progress);
     let data = check(&loaded.recording);
     let report =
@@ -76,7 +79,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     output::save(&args.output, &(extended.to_json()? + "\n"))?;
     files += &written("model", &args.output);
     if quiet {
-        return Ok(());
+        return watch.end();
     }
     let text = heading(&format!("Before and after {added}"))
         + &output::ladder(&discovery, "before")
@@ -85,6 +88,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + &heading("Where it fails now")
         + &output::regimes(&discovery.regimes)
         + "\n"
+        + &output::notes(&discovery)
         + &files;
-    output::print(&text)
+    output::print(&text)?;
+    watch.end()
 }

@@ -8,12 +8,13 @@ use missing_physics::Recording;
 use missing_physics::data_check::check;
 
 use crate::app::Global;
-use crate::args::{Compared, DataArgs, EffectNames, OutputArgs, TimeArgs};
+use crate::args::{Compared, DataArgs, EffectNames, LimitArgs, OutputArgs, TimeArgs};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::steps::{self, ALGORITHMS};
+use crate::stop::Watch;
 
 /// Identify the parameters of a model made of given effects
 ///
@@ -32,6 +33,8 @@ pub struct Args {
     /// What the model is compared with: the force along the measured motion, or its own motion
     #[arg(long, value_enum, default_value_t = Compared::Force)]
     horizon: Compared,
+    #[command(flatten)]
+    limit: LimitArgs,
     #[command(flatten)]
     time: TimeArgs,
     /// Seed of every random choice
@@ -53,8 +56,8 @@ fn in_time(
     recording: &Recording,
     family: &FrictionFamily,
     effects: &[String],
-    progress: Progress,
-    quiet: bool,
+    (progress, quiet): (Progress, bool),
+    watch: Watch,
 ) -> Result<(), Failure> {
     let found = steps::identify_in_time(
         recording,
@@ -62,6 +65,7 @@ fn in_time(
         effects,
         &args.time.task(args.horizon)?,
         (&args.algorithm, args.seed),
+        watch,
     )?;
     drop(progress);
     let mut files = String::new();
@@ -74,10 +78,11 @@ fn in_time(
         files += &written("model", path);
     }
     if quiet {
-        return Ok(());
+        return watch.end();
     }
     let title = format!("{} by simulation, {}", effects.join(" + "), args.horizon.name());
-    output::print(&(heading(&title) + &found.text() + &files))
+    output::print(&(heading(&title) + &found.text() + &files))?;
+    watch.end()
 }
 
 const EXAMPLES: &str = "\
@@ -89,6 +94,7 @@ Examples:
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let effects = args.effects.checked()?;
+    let watch = args.limit.watch();
     let loaded = args.data.read()?;
     let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
@@ -97,12 +103,12 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say(format!("identifying {}", effects.join(" + ")));
     let method = steps::method(&args.algorithm)?;
     if args.horizon != Compared::Force {
-        return in_time(args, &loaded.recording, &family, &effects, progress, quiet);
+        return in_time(args, &loaded.recording, &family, &effects, (progress, quiet), watch);
     }
-    let (fit, evaluations) = steps::identify(&family, &effects, &*method, args.seed)?;
+    let (fit, evaluations) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
     let rung = steps::rung(&family, &fit, None);
     let model = steps::model(&family, &rung)?;
-    let discovery = steps::comparison(&family, &fit, &fit, vec![rung.clone()], args.seed);
+    let discovery = steps::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, watch);
     drop(progress);
     let data = check(&loaded.recording);
     let report =
@@ -113,13 +119,15 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         files += &written("model", path);
     }
     if quiet {
-        return Ok(());
+        return watch.end();
     }
     let title = format!("{} by {} ({evaluations} evaluations)", effects.join(" + "), args.algorithm);
     let text = heading(&title)
         + &output::parameters(&rung)
         + &heading("Errors")
         + &output::ladder(&discovery, "the model")
+        + &output::notes(&discovery)
         + &files;
-    output::print(&text)
+    output::print(&text)?;
+    watch.end()
 }

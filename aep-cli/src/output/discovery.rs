@@ -8,6 +8,8 @@ use missing_physics::Discovery;
 use missing_physics::quantity::{number, percent};
 use missing_physics::report::{Candidate, RegimeShare, Rung, SplitError, Verdict, Where};
 
+use crate::args::library;
+
 use super::bars::bar;
 use super::style::{dim, paint};
 use super::table::{self, Align, Table};
@@ -35,9 +37,7 @@ pub fn verdict(discovery: &Discovery) -> String {
     for line in wrapped(&discovery.summary) {
         let _ = writeln!(text, " {line}");
     }
-    for note in &discovery.notes {
-        let _ = writeln!(text, " {} {note}", dim("note:"));
-    }
+    text += &notes(discovery);
     let unexplained = discovery.verdict == Verdict::Unexplained;
     if let Some(term) = discovery.generic_term.as_ref().filter(|_| unexplained) {
         let _ =
@@ -50,6 +50,16 @@ pub fn verdict(discovery: &Discovery) -> String {
         text += &limits(discovery);
     }
     text
+}
+
+/// What there is to add, a line each.
+pub fn notes(discovery: &Discovery) -> String {
+    discovery.notes.iter().map(|text| note(text)).collect()
+}
+
+/// A line that adds something.
+pub fn note(text: &str) -> String {
+    format!(" {} {text}\n", dim("note:"))
 }
 
 /// How large each effect would have had to be.
@@ -258,7 +268,8 @@ fn shortened(size: &str) -> String {
     format!("{}, ...", &start[..end])
 }
 
-/// The parameters of a rung with their intervals.
+/// The parameters of a rung with their intervals: the mass, then effect by effect in the order of the
+/// model, as their tables list them.
 pub fn parameters(rung: &Rung) -> String {
     let mut table = Table::new(&[
         ("parameter", Align::Left),
@@ -266,7 +277,9 @@ pub fn parameters(rung: &Rung) -> String {
         ("unit", Align::Left),
         ("95 % interval", Align::Left),
     ]);
-    for (name, estimate) in &rung.parameters {
+    let mut rows: Vec<_> = rung.parameters.iter().collect();
+    rows.sort_by_cached_key(|(name, _)| place(rung, name));
+    for (name, estimate) in rows {
         table.row([
             name.clone(),
             number(estimate.value),
@@ -275,4 +288,13 @@ pub fn parameters(rung: &Rung) -> String {
         ]);
     }
     table.text()
+}
+
+/// Place of the parameter called `name`: number of its effect, none for the mass, and its number there.
+fn place(rung: &Rung, name: &str) -> (Option<usize>, Option<usize>) {
+    let Some((effect, parameter)) = name.rsplit_once('.') else { return (None, None) };
+    let number = rung.effects.iter().position(|other| other == effect);
+    let about = library().find(effect).ok().map(friction_ident::Effect::about);
+    // What is unknown comes last.
+    (Some(number.unwrap_or(usize::MAX)), about.and_then(|about| about.parameter(parameter)))
 }

@@ -1,7 +1,5 @@
 //! Identification by simulation.
 
-use std::time::Instant;
-
 use aep_core::{Aep, Budget, MetaEp, Method};
 use friction_ident::family::FrictionFamily;
 use friction_ident::identify::{Interval, Refined, all_free};
@@ -14,7 +12,7 @@ use super::{identify, method, model, rung};
 use crate::args::{TimeTask, library};
 use crate::failure::Failure;
 use crate::output::{Align, Table, dim};
-use crate::stop;
+use crate::stop::Watch;
 
 /// Searches of an identification by simulation: several valleys may fit as well.
 const SEARCHES: u64 = 3;
@@ -27,15 +25,15 @@ pub fn identify_in_time(
     effects: &[String],
     task: &TimeTask,
     (algorithm, seed): (&str, u64),
+    watch: Watch,
 ) -> Result<Simulated, Failure> {
-    let started = Instant::now();
-    let first = first_guess(family, effects, seed)?;
+    let first = first_guess(family, effects, seed, watch)?;
     let free = all_free(&first);
     let horizon = (task.horizon)(interval(recording.time()));
     let mut problem =
-        Identification::new(&first, recording, &free, horizon)?.with_stop_flag(stop::flag());
-    if let Some(limit) = task.time_limit {
-        problem = problem.with_time_limit(limit.saturating_sub(started.elapsed()));
+        Identification::new(&first, recording, &free, horizon)?.with_stop_flag(watch.flag());
+    if let Some(left) = watch.left() {
+        problem = problem.with_time_limit(left);
     }
     let mut found: Vec<Refined> = Vec::new();
     for search in 0..SEARCHES {
@@ -69,13 +67,18 @@ pub fn identify_in_time(
 }
 
 /// Values from the comparison of forces; typical ones for effects that it cannot show.
-fn first_guess(family: &FrictionFamily, effects: &[String], seed: u64) -> Result<Model, Failure> {
+fn first_guess(
+    family: &FrictionFamily,
+    effects: &[String],
+    seed: u64,
+    watch: Watch,
+) -> Result<Model, Failure> {
     let shown: Vec<String> = effects
         .iter()
         .filter(|name| family.terms().iter().any(|term| &term.name == *name))
         .cloned()
         .collect();
-    let (fit, _) = identify(family, &shown, &Aep::practical(), seed)?;
+    let (fit, _) = identify(family, &shown, (&Aep::practical(), seed), watch)?;
     let values = model(family, &rung(family, &fit, None))?;
     let mut model = Model::new(family.axis(), values.mass())?;
     for name in effects {

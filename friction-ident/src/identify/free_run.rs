@@ -16,6 +16,7 @@ use crate::windows::{Data, WindowOptions};
 const LANES: usize = 96;
 
 /// A controller and what it follows.
+#[derive(Clone)]
 struct Loop<'a> {
     controller: Pd,
     /// Resolution of the encoder that it sees, m or rad; 0 for none.
@@ -54,6 +55,7 @@ impl<'a> Loop<'a> {
 }
 
 /// Runs of one recording from its first samples.
+#[derive(Clone)]
 pub(super) struct FreeRun<'a> {
     data: Data<'a>,
     model: Model,
@@ -91,6 +93,18 @@ impl<'a> FreeRun<'a> {
     ) -> Result<Self, IdentifyError> {
         self.under_control = Some(Loop::new(recording, controller, resolution)?);
         Ok(self)
+    }
+
+    /// Mean sampling time, s.
+    pub fn sample_time(&self) -> f64 {
+        self.data.sample_time()
+    }
+
+    /// The same with `times` as many steps.
+    pub fn finer(&self, times: usize) -> Self {
+        let mut finer = self.clone();
+        finer.data.steps *= times;
+        finer
     }
 
     /// Candidates that go into one batch.

@@ -8,11 +8,17 @@
 //! correlated in any way within blocks of the recording (cluster-robust "sandwich"), against the
 //! spread if they were independent: the threshold of the likelihood ratio is scaled by the ratio of
 //! the two variances (J. T. Kent, Biometrika 69, 1982).
+//!
+//! That holds for errors of the measurement. Where the model errs by more than the encoder, its own
+//! simulation may be why: motion that sticks and slips carries any small difference on, and a search finds
+//! parameters that make up for it. Then every value is allowed at which the error is no larger than what
+//! a finer step of integration changes, and no velocity below one count a sample has a lower limit.
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::{Free, Identification};
+use crate::axis::Quantity;
 use crate::effects::Scale;
 
 /// Blocks within which errors may be correlated.
@@ -23,6 +29,10 @@ const T: f64 = 2.093;
 const FACTOR: f64 = 10.0;
 /// A mean square error beyond this multiple of the encoder's is one of the model.
 const FAILS: f64 = 25.0;
+/// Parts that every step is divided into, to see what the integration adds.
+const PARTS: [usize; 2] = [2, 3];
+/// Counts of an encoder per standard deviation of its error.
+const COUNTS: f64 = 3.464_101_615;
 /// Bounds of the first move away from the estimate, as shares of the width of the search.
 const FIRST: (f64, f64) = (1e-4, 0.05);
 /// Each move is so much longer than the one before.
@@ -53,13 +63,16 @@ pub fn intervals_over(task: &Identification<'_>, found: &[Vec<f64>]) -> Vec<Inte
         task.residuals(found).iter().map(|errors| mean_square(errors)).collect();
     let best = (0..found.len()).min_by(|a, b| squares[*a].total_cmp(&squares[*b]));
     let Some(best) = best else { return Vec::new() };
-    let limits = limits(task, &found[best]);
-    let mut all = around(task, &found[best], &limits);
+    let fails = squares[best] > FAILS * task.scales().1;
+    // The best optimum may be the one that happens to bear the step well.
+    let step = if fails { found.iter().map(|x| step_error(task, x)).fold(0.0, f64::max) } else { 0.0 };
+    let limits = limits(task, &found[best], fails, step);
+    let mut all = around(task, &found[best], &limits, fails);
     for (x, square) in found.iter().zip(&squares).filter(|(x, _)| **x != found[best]) {
         if limits.iter().all(|(_, limit)| square > limit) {
             continue;
         }
-        let others = around(task, x, &limits);
+        let others = around(task, x, &limits, fails);
         for (k, (interval, other)) in all.iter_mut().zip(others).enumerate() {
             if *square <= limits[k].1 {
                 interval.low = interval.low.min(other.low);
@@ -69,37 +82,73 @@ pub fn intervals_over(task: &Identification<'_>, found: &[Vec<f64>]) -> Vec<Inte
         }
     }
     for (interval, free) in all.iter_mut().zip(task.free()) {
+        if fails && unresolved(task, free, interval.high) {
+            interval.low = free.low;
+            interval.identifiable = false;
+        }
         interval.identifiable &= !wide(free, interval.low, interval.high);
     }
     all
 }
 
-fn around(task: &Identification<'_>, x: &[f64], limits: &[(f64, f64)]) -> Vec<Interval> {
+fn around(
+    task: &Identification<'_>,
+    x: &[f64],
+    limits: &[(f64, f64)],
+    fails: bool,
+) -> Vec<Interval> {
     limits
         .par_iter()
         .enumerate()
-        .map(|(k, (spread, limit))| interval(task, x, k, *spread, *limit))
+        .map(|(k, (spread, limit))| interval(task, x, k, *spread, Limit { square: *limit, fails }))
         .collect()
 }
 
+/// What the integration adds to the mean square error at `x`, m^2 or rad^2.
+fn step_error(task: &Identification<'_>, x: &[f64]) -> f64 {
+    PARTS.iter().map(|parts| task.step_error(x, *parts)).fold(0.0, f64::max)
+}
+
+/// Whether `value` is a velocity below one count a sample.
+fn unresolved(task: &Identification<'_>, free: &Free, value: f64) -> bool {
+    let velocity =
+        task.model.parameter(&free.address).is_some_and(|p| p.quantity == Quantity::Velocity);
+    velocity && value < COUNTS * task.scales().1.sqrt() / task.sample_time()
+}
+
+/// Where a value no longer fits.
+#[derive(Clone, Copy)]
+struct Limit {
+    /// Largest mean square error, m^2 or rad^2.
+    square: f64,
+    /// Whether the model errs by more than the encoder.
+    fails: bool,
+}
+
+impl Limit {
+    /// Whether `x` with this mean square error fits.
+    fn allows(self, task: &Identification<'_>, x: &[f64], square: f64) -> bool {
+        square <= self.square || (self.fails && square <= step_error(task, x))
+    }
+}
+
 /// Spread of each parameter around the optimum `x`, and the largest mean square error at which a value
-/// still fits.
-fn limits(task: &Identification<'_>, x: &[f64]) -> Vec<(f64, f64)> {
+/// still fits; `step` is what the integration adds.
+fn limits(task: &Identification<'_>, x: &[f64], fails: bool, step: f64) -> Vec<(f64, f64)> {
     let at_optimum = task.residuals(&[x.to_vec()]).remove(0);
     let spreads = spreads(&jacobian(task, x), &at_optimum);
     let (_, noise) = task.scales();
     let square = mean_square(&at_optimum);
     let samples = at_optimum.len() as f64;
     // Errors far beyond the encoder's are those of the model, and last as long as a block.
-    let fails = square > FAILS * noise;
     let limit = |spread: &Spread| {
         let inflation = if fails { samples / BLOCKS as f64 } else { spread.inflation };
-        square + square.max(noise) * T * T * inflation / samples
+        square + step.max(square.max(noise) * T * T * inflation / samples)
     };
     spreads.iter().map(|spread| (spread.robust, limit(spread))).collect()
 }
 
-fn interval(task: &Identification<'_>, x: &[f64], k: usize, spread: f64, limit: f64) -> Interval {
+fn interval(task: &Identification<'_>, x: &[f64], k: usize, spread: f64, limit: Limit) -> Interval {
     let free = &task.free()[k];
     let first = if spread.is_finite() { 0.5 * T * spread } else { FIRST.1 };
     let first = first.clamp(FIRST.0, FIRST.1);
@@ -117,7 +166,7 @@ fn wide(free: &Free, low: f64, high: f64) -> bool {
 
 /// How far parameter `k` can be moved, beginning with the share `first` of its width, with all others
 /// fitted anew and the mean square error below `limit`.
-fn reach(task: &Identification<'_>, x: &[f64], k: usize, first: f64, limit: f64) -> f64 {
+fn reach(task: &Identification<'_>, x: &[f64], k: usize, first: f64, limit: Limit) -> f64 {
     let free = &task.free()[k];
     let (mut from, mut share) = (x.to_vec(), first);
     // Share and excess of the error of the last point within the limit.
@@ -128,8 +177,12 @@ fn reach(task: &Identification<'_>, x: &[f64], k: usize, first: f64, limit: f64)
         let ends = from[k] <= free.low || from[k] >= free.high;
         from = task.refine_but(&from, Some(k)).position;
         let square = mean_square(&task.residuals(std::slice::from_ref(&from))[0]);
-        if square > limit || square.is_nan() {
-            return free.moved(x[k], between(within, (share, square - origin), limit - origin));
+        if !limit.allows(task, &from, square) {
+            if fits_at_bound(task, x, k, first, limit) {
+                return if first > 0.0 { free.high } else { free.low };
+            }
+            let excess = limit.square - origin;
+            return free.moved(x[k], between(within, (share, square - origin), excess));
         }
         if ends {
             return from[k];
@@ -137,6 +190,20 @@ fn reach(task: &Identification<'_>, x: &[f64], k: usize, first: f64, limit: f64)
         within = (share, (square - origin).max(0.0));
         share *= LONGER;
     }
+}
+
+/// Whether the bound on this side fits although values before it do not: stick and slip make many
+/// valleys, so this is asked where the model errs by more than the encoder.
+fn fits_at_bound(task: &Identification<'_>, x: &[f64], k: usize, side: f64, limit: Limit) -> bool {
+    if !limit.fails {
+        return false;
+    }
+    let free = &task.free()[k];
+    let mut at = x.to_vec();
+    at[k] = if side > 0.0 { free.high } else { free.low };
+    let at = task.refine_but(&at, Some(k)).position;
+    let square = mean_square(&task.residuals(std::slice::from_ref(&at))[0]);
+    limit.allows(task, &at, square)
 }
 
 /// Where the excess reaches `limit` between two points; it grows with the square of the distance.

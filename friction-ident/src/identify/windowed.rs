@@ -9,6 +9,7 @@ use crate::model::Model;
 use crate::windows::{Data, Fitter, TOGETHER, WindowError, WindowErrors, WindowOptions};
 
 /// Windows of one recording.
+#[derive(Clone)]
 pub(super) struct Windowed<'a> {
     data: Data<'a>,
     model: Model,
@@ -36,6 +37,18 @@ impl<'a> Windowed<'a> {
         let scale = cut.iter().map(|(_, range)| spread(range)).sum::<f64>() / cut.len() as f64;
         let scale = scale.max(data.noise * data.noise).max(f64::MIN_POSITIVE);
         Ok(Self { data, model: model.clone(), cut, scale })
+    }
+
+    /// Mean sampling time, s.
+    pub fn sample_time(&self) -> f64 {
+        self.data.sample_time()
+    }
+
+    /// The same with `times` as many steps.
+    pub fn finer(&self, times: usize) -> Self {
+        let mut finer = self.clone();
+        finer.data.steps *= times;
+        finer
     }
 
     /// Mean square of the motion and of the position's noise.

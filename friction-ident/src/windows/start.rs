@@ -12,6 +12,7 @@ use crate::simulator::Input;
 const NEIGHBOURS: usize = 12;
 
 /// The channels of a recording that windows need.
+#[derive(Clone)]
 pub(crate) struct Data<'a> {
     pub time: &'a [f64],
     pub force: &'a [f64],
@@ -46,6 +47,13 @@ impl<'a> Data<'a> {
             steps: ((longest / options.max_step - 1e-6).ceil() as usize).max(1),
             noise: noise(position, recording.segments()),
         })
+    }
+
+    /// Mean time between samples, s.
+    pub fn sample_time(&self) -> f64 {
+        let time: f64 = self.segments.iter().map(|s| self.time[s.end - 1] - self.time[s.start]).sum();
+        let intervals: usize = self.segments.iter().map(|s| s.len() - 1).sum();
+        time / intervals.max(1) as f64
     }
 
     /// The whole recording as an input.
