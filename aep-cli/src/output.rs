@@ -20,7 +20,9 @@ mod views;
 
 pub use check::data_check;
 pub use confirmation::confirmation;
-pub use discovery::{Columns, ladder, note, notes, parameters, ranking, regimes, verdict, where_it_fails};
+pub use discovery::{
+    Columns, ladder, note, notes, parameters, ranking, regimes, verdict, where_it_fails,
+};
 pub use residual::{lines, tests};
 pub use style::{bold, dim, heading};
 pub use table::{Align, Table};

@@ -37,7 +37,8 @@ pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
 
 /// What a comparison that ended early says.
-pub const STOPPED: &str = "stopped early: this is what was found until then, and what takes long was left out";
+pub const STOPPED: &str =
+    "stopped early: this is what was found until then, and what takes long was left out";
 
 /// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {

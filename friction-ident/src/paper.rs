@@ -161,8 +161,18 @@ pub fn training_data_with_noise(
     max_step: f64,
     force_noise: f64,
 ) -> Result<Recording, ClosedLoopError> {
+    training_data_of_seed(table, max_step, force_noise, 0)
+}
+
+/// The same with other noise for every seed.
+fn training_data_of_seed(
+    table: &Model,
+    max_step: f64,
+    force_noise: f64,
+    seed: u64,
+) -> Result<Recording, ClosedLoopError> {
     let (mut force, mut position, mut reference) = (Vec::new(), Vec::new(), Vec::new());
-    for (seed, block) in (1..).zip(references()) {
+    for (seed, block) in (1 + 4 * seed..).zip(references()) {
         let encoder_resolution = ENCODER;
         let setup = Setup { encoder_resolution, force_noise, max_step, seed, ..Setup::default() };
         let mut pd = Pd::new(PROPORTIONAL, DERIVATIVE);
@@ -252,6 +262,31 @@ mod tests {
                 "gamma" => assert!(!interval.identifiable, "{interval:?}"),
                 "m_e" | "F_C" | "F_v" | "k_t" => assert!(interval.identifiable, "{interval:?}"),
                 _ => {}
+            }
+        }
+    }
+
+    /// Four sets of data, each simulated more finely than its model and with noise: none may claim a
+    /// wrong value. 95 % intervals would miss 1 of 20; of these 8 all must hold, as they do not claim
+    /// anything where the motion is that of a finer step.
+    #[test]
+    fn with_noise_and_another_step_gamma_and_the_stribeck_velocity_are_not_to_be_known() {
+        for (seed, fine, noise) in
+            [(0, 2.5e-4, 0.05), (1, 2.5e-4, 0.05), (2, 1e-3, 0.02), (3, 2.5e-4, 0.1)]
+        {
+            let data = training_data_of_seed(&table().unwrap(), fine, noise, seed).unwrap();
+            let task = task(&data, SAMPLE_TIME).unwrap();
+            let found = intervals(&task, &task.refine(&task.start()).position);
+            for (parameter, interval) in PARAMETERS.iter().zip(&found) {
+                let value = parameter.value;
+                let holds = interval.low <= value && value <= interval.high;
+                if matches!(parameter.symbol, "gamma" | "x'_s") {
+                    assert!(
+                        holds || !interval.identifiable,
+                        "{seed}: {} {interval:?}",
+                        parameter.symbol
+                    );
+                }
             }
         }
     }

@@ -137,11 +137,20 @@ impl Simulated {
             let interval = match interval {
                 None => "stopped before it was known".to_owned(),
                 Some(i) if i.identifiable => format!("{} .. {}", number(i.low), number(i.high)),
-                Some(i) => format!(
-                    "not identifiable from this data ({} .. {} fit as well)",
-                    number(i.low),
-                    number(i.high)
-                ),
+                Some(i) => {
+                    let (low, high) = (number(i.low), number(i.high));
+                    let free = self.free.iter().find(|free| free.address == address);
+                    let fits = match free {
+                        Some(free) if i.low <= free.low && i.high < free.high => {
+                            format!("all below {high} fit")
+                        }
+                        Some(free) if i.low > free.low && i.high >= free.high => {
+                            format!("all above {low} fit")
+                        }
+                        _ => format!("{low} .. {high} fit"),
+                    };
+                    format!("not identifiable from this data ({fits} as well)")
+                }
             };
             table.row([address.to_owned(), number(value), unit.to_owned(), interval]);
         }

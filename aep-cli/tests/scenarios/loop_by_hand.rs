@@ -69,3 +69,52 @@ fn an_effect_that_the_model_has_is_not_added_again() {
         .refused(&["has 'viscous' already", "  model.json"]);
     assert!(!desk.path("better.json").exists());
 }
+
+#[test]
+fn a_gain_of_the_motor_without_a_known_mass_is_not_determined() {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 2, "c");
+    let line = "identify c/recording.csv --effects coulomb,viscous,offset,motor-gain --json -";
+    let json: serde_json::Value = serde_json::from_str(desk.aep(line).done()).unwrap();
+    let parameters = json["parameters"].as_object().unwrap();
+    assert_eq!(parameters.len(), 5);
+    for (name, parameter) in parameters {
+        assert_eq!(parameter["identifiable"], false, "{name}: {parameter}");
+    }
+}
+
+#[test]
+fn parameters_stand_in_the_order_of_the_model() {
+    let desk = Desk::new();
+    desk.challenge("nothing", 1, "c");
+    let run = desk.aep("identify c/recording.csv --effects viscous,offset,coulomb");
+    let places = ["mass", "viscous.F_v", "offset.F_0", "coulomb.F_C"].map(|p| run.done().find(p));
+    assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{}", run.out);
+}
+
+#[test]
+fn a_time_limit_keeps_what_was_found() {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 2, "c");
+    let effects = "coulomb,viscous,offset,stribeck";
+    let line = format!("identify c/recording.csv --effects {effects} -o m.json --time-limit 1e-3");
+    let run = desk.aep(&line);
+    assert!(run.done().contains("stopped early"), "{}", run.out);
+    let run = desk.aep("compare c/recording.csv --model m.json --time-limit 1e-3 --json c.json");
+    assert!(run.done().contains("stopped early") && desk.path("c.json").exists(), "{}", run.out);
+    let line = "extend c/recording.csv --model m.json --add presliding -o b.json --time-limit 1e-3";
+    assert!(desk.aep(line).done().contains("stopped early") && desk.path("b.json").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn after_ctrl_c_identify_saves_what_it_has() {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 2, "c");
+    // Many shapes, so that the search is still on when it is stopped.
+    let effects = "coulomb,viscous,offset,stribeck,frictional-memory,presliding";
+    let run =
+        desk.interrupted(&format!("identify c/recording.csv --effects {effects} -o m.json"), 1.0);
+    assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
+    assert!(desk.path("m.json").exists() && run.out.contains("stopped early"), "{}", run.out);
+}

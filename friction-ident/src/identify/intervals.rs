@@ -65,7 +65,8 @@ pub fn intervals_over(task: &Identification<'_>, found: &[Vec<f64>]) -> Vec<Inte
     let Some(best) = best else { return Vec::new() };
     let fails = squares[best] > FAILS * task.scales().1;
     // The best optimum may be the one that happens to bear the step well.
-    let step = if fails { found.iter().map(|x| step_error(task, x)).fold(0.0, f64::max) } else { 0.0 };
+    let step =
+        if fails { found.iter().map(|x| step_error(task, x)).fold(0.0, f64::max) } else { 0.0 };
     let limits = limits(task, &found[best], fails, step);
     let mut all = around(task, &found[best], &limits, fails);
     for (x, square) in found.iter().zip(&squares).filter(|(x, _)| **x != found[best]) {
@@ -158,6 +159,9 @@ fn interval(task: &Identification<'_>, x: &[f64], k: usize, spread: f64, limit: 
 }
 
 fn wide(free: &Free, low: f64, high: f64) -> bool {
+    if low <= free.low && high >= free.high {
+        return true;
+    }
     match free.scale {
         Scale::Log => high > FACTOR * low,
         Scale::Linear => high - low > 0.5 * (free.high - free.low),
@@ -237,6 +241,11 @@ fn jacobian(task: &Identification<'_>, x: &[f64]) -> DMatrix<f64> {
 /// Half-width of a difference, as a share of the width of the search.
 const DIFFERENCE: f64 = 1e-4;
 
+/// Share of the largest curvature up to which there is none.
+const SAME: f64 = 1e-8;
+/// Share of the largest move along such a direction from which a parameter takes part in it.
+const PART: f64 = 1e-2;
+
 /// Standard deviation of an estimate, as a share of the width of the search.
 struct Spread {
     /// With errors correlated within blocks; infinite where nothing depends on the parameter.
@@ -259,9 +268,10 @@ fn spreads(jacobian: &DMatrix<f64>, errors: &[f64]) -> Vec<Spread> {
     if !normal.iter().all(|value| value.is_finite()) {
         return (0..count).map(|_| unknown()).collect();
     }
-    let Ok(inverse) = normal.pseudo_inverse(1e-9) else {
+    let Ok(inverse) = normal.clone().pseudo_inverse(1e-9) else {
         return (0..count).map(|_| unknown()).collect();
     };
+    let undetermined = undetermined(&normal, &lengths);
     let mut middle = DMatrix::zeros(count, count);
     for start in (0..samples).step_by(block) {
         let rows = start..(start + block).min(samples);
@@ -274,7 +284,7 @@ fn spreads(jacobian: &DMatrix<f64>, errors: &[f64]) -> Vec<Spread> {
     let square = mean_square(errors);
     (0..count)
         .map(|k| {
-            if lengths[k] <= 1e-9 * longest {
+            if lengths[k] <= 1e-9 * longest || undetermined[k] {
                 return unknown();
             }
             let robust = covariance[(k, k)].max(0.0);
@@ -285,6 +295,24 @@ fn spreads(jacobian: &DMatrix<f64>, errors: &[f64]) -> Vec<Spread> {
             }
         })
         .collect()
+}
+
+/// Which parameters change along a direction that changes no error: together they are not determined,
+/// however much each of them does alone.
+fn undetermined(normal: &DMatrix<f64>, lengths: &[f64]) -> Vec<bool> {
+    let eigen = normal.clone().symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    let mut found = vec![false; lengths.len()];
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > SAME * largest {
+            continue;
+        }
+        let moves: Vec<f64> =
+            vector.iter().zip(lengths).map(|(v, length)| v.abs() / length).collect();
+        let most = moves.iter().copied().filter(|m| m.is_finite()).fold(0.0, f64::max);
+        found.iter_mut().zip(&moves).for_each(|(found, m)| *found |= *m > PART * most);
+    }
+    found
 }
 
 fn mean_square(errors: &[f64]) -> f64 {

@@ -125,6 +125,25 @@ fn a_parameter_without_influence_is_reported_as_such() {
 }
 
 #[test]
+fn the_gain_of_a_motor_is_known_only_where_the_mass_is() {
+    let model = table().with("motor-gain", &[("g", 1.0)]).unwrap();
+    let data = recording(&model, 1e-6);
+    let mut free = free();
+    free.push(Free::log("motor-gain.g", 0.5, 2.0));
+    let windows = WindowOptions { max_step: 2e-3, ..WindowOptions::new(0.2) };
+    for horizon in [Horizon::FreeRun { max_step: 2e-3 }, Horizon::Windows(windows)] {
+        let task = Identification::new(&model, &data, &free, horizon).unwrap();
+        for (free, interval) in free.iter().zip(intervals(&task, &task.start())) {
+            assert!(!interval.identifiable, "{} {interval:?}", free.address);
+        }
+        let task = Identification::new(&model, &data, &free[1..], horizon).unwrap();
+        for (free, interval) in free[1..].iter().zip(intervals(&task, &task.start())) {
+            assert!(interval.identifiable, "{} {interval:?}", free.address);
+        }
+    }
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
     let data = recording(&table(), 1e-6);
     let horizon = Horizon::FreeRun { max_step: 2e-3 };

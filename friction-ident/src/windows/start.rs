@@ -51,7 +51,8 @@ impl<'a> Data<'a> {
 
     /// Mean time between samples, s.
     pub fn sample_time(&self) -> f64 {
-        let time: f64 = self.segments.iter().map(|s| self.time[s.end - 1] - self.time[s.start]).sum();
+        let time: f64 =
+            self.segments.iter().map(|s| self.time[s.end - 1] - self.time[s.start]).sum();
         let intervals: usize = self.segments.iter().map(|s| s.len() - 1).sum();
         time / intervals.max(1) as f64
     }
