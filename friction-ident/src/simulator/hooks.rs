@@ -1,5 +1,6 @@
 //! Calls of the effects' hooks for all lanes.
 
+use super::kernels::keep_positive;
 use super::plants::Plants;
 use crate::effects::{
     Advance, Balance, Motion, Parameters, Recalled, Response, Smooth, Step, Taken,
@@ -29,10 +30,9 @@ impl Plants {
         }
     }
 
+    /// Adds the smooth forces to what the prediction has set to 0.
     pub(super) fn call_smooth(&mut self) {
         let Self { effects, smooth, scratch: s, dwell, lanes, .. } = self;
-        s.force.fill(0.0);
-        s.damping.fill(0.0);
         let motion = Motion {
             time: &s.time,
             position: &s.position,
@@ -83,13 +83,18 @@ impl Plants {
         }
     }
 
-    /// Friction level, and that at rest where the contact wants it.
+    /// Adds up the friction level from 0, not yet cut off at 0, and that at rest where the contact wants it.
     pub(super) fn call_level(&mut self) {
+        if !self.memories.is_empty() {
+            self.scratch.level.copy_from_slice(&self.scratch.remembered);
+        }
         self.sum_level(false);
         let contact = self.contact.and_then(|k| self.effects[k].effect.element());
         if contact.is_some_and(crate::effects::Element::needs_breakaway) {
             std::mem::swap(&mut self.scratch.level, &mut self.scratch.breakaway);
+            self.scratch.level.copy_from_slice(&self.scratch.remembered);
             self.sum_level(true);
+            keep_positive(&mut self.scratch.level);
             std::mem::swap(&mut self.scratch.level, &mut self.scratch.breakaway);
         }
     }
@@ -107,13 +112,11 @@ impl Plants {
             bond: &s.bond,
             drive_force: &s.drive,
         };
-        s.level.copy_from_slice(&s.remembered);
         for k in level.iter() {
             let active = &effects[*k];
             let p = Parameters::new(&active.values, *lanes);
             active.effect.friction_level(p, &motion, &mut s.level);
         }
-        keep_positive(&mut s.level);
     }
 
     /// Solves the balance in closed form where a contact is the only element and can.
@@ -204,13 +207,6 @@ impl Plants {
 }
 
 vectorised! {
-    /// Cuts off at 0, unlike `max` without hiding a NaN.
-    pub(super) fn keep_positive(values: &mut [f64]) {
-        for value in values {
-            *value = if *value < 0.0 { 0.0 } else { *value };
-        }
-    }
-
     fn add(a: &[f64], b: &[f64], sum: &mut [f64]) {
         for ((sum, a), b) in sum.iter_mut().zip(a).zip(b) {
             *sum = a + b;

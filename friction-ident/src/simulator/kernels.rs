@@ -2,6 +2,13 @@
 
 use crate::simd::{sign, vectorised};
 
+/// Cuts off at 0, unlike `max` without hiding a NaN.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn positive(value: f64) -> f64 {
+    if value < 0.0 { 0.0 } else { value }
+}
+
 vectorised! {
     pub(super) fn advance(duration: &[f64], time: &mut [f64]) {
         for (time, duration) in time.iter_mut().zip(duration) {
@@ -43,12 +50,21 @@ vectorised! {
         predicted: &mut [f64],
         direction: &mut [f64],
         when: &mut [f64],
+        force: &mut [f64],
+        damping: &mut [f64],
+        level: &mut [f64],
     ) {
         let n = x.len();
         let (v, slope, left, time) = (&v[..n], &slope[..n], &left[..n], &time[..n]);
         let (middle, predicted) = (&mut middle[..n], &mut predicted[..n]);
         let (direction, when) = (&mut direction[..n], &mut when[..n]);
+        let (force, damping) = (&mut force[..n], &mut damping[..n]);
+        let level = &mut level[..n];
         for i in 0..n {
+            // The sums over effects begin here.
+            force[i] = 0.0;
+            damping[i] = 0.0;
+            level[i] = 0.0;
             let half = 0.5 * left[i];
             when[i] = time[i] + half;
             let s = sign(v[i]);
@@ -124,6 +140,39 @@ vectorised! {
         }
     }
 
+    /// The same with a contact that carries the friction level, which is cut off at 0 on the way.
+    pub(super) fn balance_elastic(
+        mass: &[f64],
+        v: &[f64],
+        left: &[f64],
+        drive: &[f64],
+        force: &[f64],
+        damping: &[f64],
+        predicted: &[f64],
+        level: &mut [f64],
+        inertia: &mut [f64],
+        push: &mut [f64],
+    ) {
+        let n = mass.len();
+        let (v, left, drive, force) = (&v[..n], &left[..n], &drive[..n], &force[..n]);
+        let (damping, predicted, level) = (&damping[..n], &predicted[..n], &mut level[..n]);
+        let (inertia, push) = (&mut inertia[..n], &mut push[..n]);
+        for i in 0..n {
+            level[i] = positive(level[i]);
+            let slope = if damping[i] < 0.0 { 0.0 } else { damping[i] };
+            let others = drive[i] - force[i] + slope * predicted[i];
+            inertia[i] = 2.0 * mass[i] + left[i] * slope;
+            push[i] = 2.0 * mass[i] * v[i] + left[i] * others;
+        }
+    }
+
+    /// Cuts off at 0.
+    pub(super) fn keep_positive(values: &mut [f64]) {
+        for value in values {
+            *value = positive(*value);
+        }
+    }
+
     pub(super) fn newton(
         left: &[f64],
         inertia: &[f64],
@@ -165,6 +214,17 @@ vectorised! {
             v[i] += change;
             time[i] += left[i];
         }
+    }
+
+    /// Whether two slices differ anywhere: without a way out in the middle, which would keep the compiler from
+    /// taking several lanes at once.
+    pub(super) fn differ(a: &[f64], b: &[f64], answer: &mut bool) {
+        let b = &b[..a.len()];
+        let mut count = 0u64;
+        for i in 0..a.len() {
+            count += u64::from(a[i] != b[i]);
+        }
+        *answer = count > 0;
     }
 
     pub(super) fn invert(duration: &[f64], rate: &mut [f64]) {

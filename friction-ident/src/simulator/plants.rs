@@ -1,6 +1,7 @@
 //! Plants of the same effects that advance together, one per lane.
 
 use super::SimulationError;
+use super::kernels::keep_positive;
 use super::scratch::Scratch;
 use crate::effects::{Drive, Effect, Element, Memory, Onset, Parameters, Past, Slot};
 use crate::model::Model;
@@ -233,7 +234,9 @@ impl Plants {
             s.direction[*i] = sign(start.used);
         }
         self.recall();
+        self.scratch.level.fill(0.0);
         self.call_level();
+        keep_positive(&mut self.scratch.level);
         for (i, start) in fresh {
             let (level, lanes) = (self.scratch.level[i], self.lanes);
             for active in &mut self.effects {
@@ -259,9 +262,13 @@ impl Plants {
         let (smooth, level) = (self.smooth.clone(), self.level.clone());
         self.smooth.retain(|other| *other == k);
         self.level.retain(|other| *other == k);
-        self.scratch.remembered.fill(0.0);
+        let s = &mut self.scratch;
+        for sum in [&mut s.remembered, &mut s.force, &mut s.damping, &mut s.level] {
+            sum.fill(0.0);
+        }
         self.call_smooth();
         self.call_level();
+        keep_positive(&mut self.scratch.level);
         (self.smooth, self.level) = (smooth, level);
         let active = &self.effects[k];
         let states = active.element.iter().chain(&active.drive).skip(i).step_by(self.lanes);

@@ -1,8 +1,8 @@
 //! One step of all lanes.
 
 use super::kernels::{
-    advance, balance, close_elastic, close_rigid, count_rest, direct, displace, divide, invert,
-    newton, predict, rest,
+    advance, balance, balance_elastic, close_elastic, close_rigid, count_rest, differ, direct,
+    displace, divide, invert, keep_positive, newton, predict, rest,
 };
 use super::plants::Plants;
 use crate::effects::Parameters;
@@ -33,7 +33,9 @@ impl Plants {
     /// An elastic step is one piece: its length and the rate that belongs to it seldom change.
     fn set_duration(&mut self, duration: &[f64]) {
         let s = &mut self.scratch;
-        if s.left != duration {
+        let mut changed = true;
+        differ(&s.left, duration, &mut changed);
+        if changed {
             s.left.copy_from_slice(duration);
             invert(duration, &mut s.rate);
         }
@@ -63,6 +65,9 @@ impl Plants {
             &mut s.velocity,
             &mut s.direction,
             &mut s.time,
+            &mut s.force,
+            &mut s.damping,
+            &mut s.level,
         );
         self.call_smooth();
         self.recall();
@@ -71,7 +76,19 @@ impl Plants {
     fn elastic_piece(&mut self) {
         self.predict();
         self.call_level();
-        self.balance(false);
+        let s = &mut self.scratch;
+        balance_elastic(
+            &self.mass,
+            &self.velocity,
+            &s.left,
+            &s.drive,
+            &s.force,
+            &s.damping,
+            &s.velocity,
+            &mut s.level,
+            &mut s.inertia,
+            &mut s.push,
+        );
         if !self.solve_contact() {
             self.newton();
             self.scratch.taken.copy_from_slice(&self.scratch.left);
@@ -100,6 +117,7 @@ impl Plants {
         direct(&self.velocity, &s.drive, &s.force, &s.elements, &mut s.direction);
         self.call_level();
         let s = &mut self.scratch;
+        keep_positive(&mut s.level);
         rest(
             &self.velocity,
             &s.drive,
@@ -116,7 +134,7 @@ impl Plants {
         if rests {
             self.commit_elements();
         }
-        self.balance(true);
+        self.balance();
         if self.attached.is_empty() {
             let s = &mut self.scratch;
             divide(&s.push, &s.inertia, &mut s.mean);
@@ -145,11 +163,9 @@ impl Plants {
         }
     }
 
-    /// Momentum balance of the piece without its elements; the friction level acts as a force where
-    /// no contact carries it.
-    fn balance(&mut self, rigid: bool) {
+    /// Momentum balance of the piece without its elements, with the friction level as a force.
+    fn balance(&mut self) {
         let s = &mut self.scratch;
-        let level = if rigid { &s.level } else { &s.zero };
         balance(
             &self.mass,
             &self.velocity,
@@ -158,7 +174,7 @@ impl Plants {
             &s.force,
             &s.damping,
             &s.velocity,
-            level,
+            &s.level,
             &s.direction,
             &mut s.inertia,
             &mut s.push,
