@@ -266,9 +266,8 @@ mod tests {
         }
     }
 
-    /// Four sets of data, each simulated more finely than its model and with noise: none may claim a
-    /// wrong value. 95 % intervals would miss 1 of 20; of these 8 all must hold, as they do not claim
-    /// anything where the motion is that of a finer step.
+    /// Four sets of data with their own noise, each simulated more finely than its model: of eight
+    /// 95 % intervals one may miss with probability 0.34, but what is not identifiable claims nothing.
     #[test]
     fn with_noise_and_another_step_gamma_and_the_stribeck_velocity_are_not_to_be_known() {
         for (seed, fine, noise) in
