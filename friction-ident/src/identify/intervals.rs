@@ -242,7 +242,7 @@ fn jacobian(task: &Identification<'_>, x: &[f64]) -> DMatrix<f64> {
 const DIFFERENCE: f64 = 1e-4;
 
 /// Share of the largest curvature up to which there is none.
-const SAME: f64 = 1e-8;
+const SAME: f64 = 1e-6;
 /// Share of the largest move along such a direction from which a parameter takes part in it.
 const PART: f64 = 1e-2;
 
