@@ -9,7 +9,7 @@ use crate::family::ModelFamily;
 use crate::fit::{self, Fit};
 use crate::ladder::Ladder;
 use crate::pairs::{self, Pair};
-use crate::report::{Discovery, SplitError};
+use crate::report::{Discovery, SplitError, Where};
 use crate::screen::{self, Screened, Screening, weights};
 use crate::split::Split;
 use crate::tried::{self, Tried, as_good, square};
@@ -305,7 +305,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         places.iter().any(|place| place.p_value <= IN_TIME && 1.0 - place.share < left)
     }
 
-    fn along_time(&self, residual: &[f64]) -> Vec<crate::report::Where> {
+    fn along_time(&self, residual: &[f64]) -> Vec<Where> {
+        self.where_it_fails(residual, where_it_fails::times)
+    }
+
+    /// What `look` says of a residual, weighed by its doubt.
+    fn where_it_fails(
+        &self,
+        residual: &[f64],
+        look: fn(&F, &where_it_fails::View<'_>) -> Vec<Where>,
+    ) -> Vec<Where> {
         let weights = weights(self.family.doubt(), residual);
         let view = where_it_fails::View {
             residual,
@@ -313,7 +322,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             motion: &self.motion,
             seed: self.settings.seed,
         };
-        where_it_fails::times(self.family, &view)
+        look(self.family, &view)
     }
 
     /// Whether no other view of the error contradicts: what really acts on the plant helps
@@ -420,16 +429,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         last: &'b Fit,
         screened: &'b [Screened],
     ) -> verdict::Evidence<'b> {
-        let view = |residual: &[f64]| {
-            let weights = weights(self.family.doubt(), residual);
-            let view = where_it_fails::View {
-                residual,
-                weights: &weights,
-                motion: &self.motion,
-                seed: self.settings.seed,
-            };
-            where_it_fails::coordinates(self.family, &view)
-        };
+        let view = |residual: &[f64]| self.where_it_fails(residual, where_it_fails::coordinates);
         verdict::Evidence {
             where_base: view(&base.residual),
             where_last: view(&last.residual),
