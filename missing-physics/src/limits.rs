@@ -18,8 +18,8 @@ const STEPS: usize = 6;
 const STEP: f64 = 4.0;
 
 /// The size of every effect not in the model at which it would have been found: that which removes
-/// as large a share of the error as the largest 5 % of placebos, with the shape that fits best, and, where a view shows nothing but noise, which
-/// the motion shows.
+/// as large a share of the error as the largest 5 % of placebos, with the shape that fits best, and,
+/// where a view shows nothing but noise, that which the motion shows.
 pub fn limits<F: ModelFamily + ?Sized>(
     family: &F,
     split: &Split,
