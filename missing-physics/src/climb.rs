@@ -26,6 +26,8 @@ const LEAST_PAIR: f64 = 0.05;
 const BETTER_FORM: f64 = 0.8;
 /// A model is at the noise floor where its error exceeds it by at most this factor.
 const AT_FLOOR: f64 = 1.05;
+/// What a candidate removes at least this share of, on held-out data, is not noise.
+const NO_NOISE: f64 = 0.2;
 /// Other forms are tried where the main form removes at least this share of what the best candidate
 /// removes.
 const HOPEFUL: f64 = 0.4;
@@ -81,7 +83,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             first_screening.get_or_insert_with(|| last_screening.clone());
             self.ladder.rank(&last_screening);
             let enough = self.ladder.added().len() >= self.settings.most;
-            if enough || self.stopped() || self.at_floor() {
+            if enough || self.stopped() || self.at_floor(&last_screening) {
                 break;
             }
             // Where a plain structure along time explains more, no effect of the library is at work, but
@@ -126,10 +128,15 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// Whether what has been added leaves no more than the noise floor: from there on an effect could
-    /// only fit noise.
-    fn at_floor(&self) -> bool {
+    /// only fit noise. What is no function of the present state (a drift, a ringing) is noise to
+    /// the floor: a candidate that removes much of it refutes that.
+    fn at_floor(&self, screened: &[Screened]) -> bool {
+        let refuted =
+            screened.iter().any(|c| c.p_value <= self.settings.alpha && c.gain >= NO_NOISE);
         let floor = || noise::floor_of(self.family, &self.fit.residual);
-        !self.ladder.added().is_empty() && square(&self.fit).sqrt() <= AT_FLOOR * floor()
+        !self.ladder.added().is_empty()
+            && !refuted
+            && square(&self.fit).sqrt() <= AT_FLOOR * floor()
     }
 
     fn screening<'b>(&'b self, candidates: &'b [usize], weights: &'b [f64]) -> Screening<'b> {
