@@ -121,7 +121,7 @@ pub static ALL: &[&dyn Effect] = &[
     &rising_static_friction::RisingStaticFriction,
     &presliding::PRESLIDING,
     &ripple::Ripple,
-    &position_friction::PositionFriction,
+    &position_friction::POSITION_FRICTION,
     &spring::Spring,
     &gravity_pendulum::GravityPendulum,
     &quadratic_drag::QuadraticDrag,

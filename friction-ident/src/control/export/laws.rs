@@ -16,6 +16,37 @@ pub(super) struct Law {
 
 const NONE: Law = Law { smooth: "", level: "", hump: "" };
 
+/// A sum of cosines over the stroke, and more terms of `u`.
+macro_rules! profile {
+    ($count:literal, $amplitudes:literal, $more:literal) => {
+        concat!(
+            "{
+    static const double c[",
+            $count,
+            "] = {",
+            $amplitudes,
+            "};
+    const double share = (x - {start}) / ({end} - {start});
+    const double u = share < 0.0 ? 0.0 : (share > 1.0 ? 1.0 : share);
+    const double cosine = cos(3.141592653589793 * u);
+    double before = 1.0, now = cosine, sum = 0.0;
+    int k;
+    for (k = 0; k < ",
+            $count,
+            "; k++) {
+        const double next = 2.0 * cosine * now - before;
+        sum += c[k] * now;
+        before = now;
+        now = next;
+    }
+    level += sum",
+            $more,
+            ";
+}"
+        )
+    };
+}
+
 /// The law of a term; none where there is none in C.
 pub(super) fn law(term: &Term) -> Option<Law> {
     Some(match term.name() {
@@ -53,22 +84,16 @@ pub(super) fn law(term: &Term) -> Option<Law> {
 }",
             ..NONE
         },
-        "position-friction" => Law {
-            level: "{
-    static const double c[6] = {{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}};
-    const double share = (x - {start}) / ({end} - {start});
-    const double u = share < 0.0 ? 0.0 : (share > 1.0 ? 1.0 : share);
-    const double cosine = cos(3.141592653589793 * u);
-    double before = 1.0, now = cosine, sum = 0.0;
-    int k;
-    for (k = 0; k < 6; k++) {
-        const double next = 2.0 * cosine * now - before;
-        sum += c[k] * now;
-        before = now;
-        now = next;
-    }
-    level += sum;
-}",
+        "position-friction" => {
+            Law { level: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", ""), ..NONE }
+        }
+        "position-friction:fine" => Law {
+            level: profile!(
+                "20",
+                "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}, {c_7}, {c_8}, {c_9}, {c_10},
+        {c_11}, {c_12}, {c_13}, {c_14}, {c_15}, {c_16}, {c_17}, {c_18}, {c_19}, {c_20}",
+                " + {p_1} * (u - 0.5) + {p_2} * (u * u - u + 1.0 / 6.0)"
+            ),
             ..NONE
         },
         "spring" => Law { smooth: "force += {k} * (x - {x_0});", ..NONE },
