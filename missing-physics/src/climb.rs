@@ -1,6 +1,9 @@
 //! Up the ladder: what the next rung is, and when there is none.
 
-use std::collections::BTreeMap;
+mod forms;
+mod reconsider;
+pub(crate) mod views;
+
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -9,7 +12,7 @@ use crate::family::ModelFamily;
 use crate::fit::{self, Fit};
 use crate::ladder::Ladder;
 use crate::pairs::{self, Pair};
-use crate::report::{Discovery, SplitError, Where};
+use crate::report::{Discovery, Where};
 use crate::screen::{self, Screened, Screening, weights};
 use crate::split::Split;
 use crate::tried::{self, Tried, as_good, square};
@@ -21,21 +24,12 @@ const MOST_TRIED: usize = 4;
 const MOST_PAIRS: usize = 4;
 /// Smallest share of the held-out squared error that a pair must remove: it has twice the freedom.
 const LEAST_PAIR: f64 = 0.05;
-/// Another form of an effect is taken where it leaves at most this share of the main form's squared
-/// error.
-const BETTER_FORM: f64 = 0.8;
 /// A model is at the noise floor where its error exceeds it by at most this factor.
 const AT_FLOOR: f64 = 1.05;
 /// What a candidate removes at least this share of, on held-out data, is not noise.
 const NO_NOISE: f64 = 0.2;
-/// Other forms are tried where the main form removes at least this share of what the best candidate
-/// removes.
-const HOPEFUL: f64 = 0.4;
 /// Largest p-value of a structure along time that is taken for real.
 const IN_TIME: f64 = 0.005;
-/// Another view contradicts an effect where its error grows by this factor on held-out data and on
-/// fitted data as well: one of them alone is a matter of a few windows.
-pub(crate) const CONTRADICTION: f64 = 1.05;
 
 /// The state of a running discovery.
 pub(crate) struct Search<'a, F: ModelFamily + ?Sized> {
@@ -50,6 +44,8 @@ pub(crate) struct Search<'a, F: ModelFamily + ?Sized> {
     excluded: Vec<usize>,
     fit: Fit,
     ladder: Ladder<'a, F>,
+    /// Effects that were exchanged for others.
+    exchanges: usize,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
@@ -71,7 +67,19 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let motion = family.motion();
         let mut ladder = Ladder::new(family, split.clone(), fitted.clone());
         ladder.push(&[], &fit, None);
-        Self { family, settings, observer, started, split, fitted, motion, excluded, fit, ladder }
+        Self {
+            family,
+            settings,
+            observer,
+            started,
+            split,
+            fitted,
+            motion,
+            excluded,
+            fit,
+            ladder,
+            exchanges: 0,
+        }
     }
 
     pub(crate) fn run(mut self) -> Discovery {
@@ -82,16 +90,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             last_screening = self.screen();
             first_screening.get_or_insert_with(|| last_screening.clone());
             self.ladder.rank(&last_screening);
-            let enough = self.ladder.added().len() >= self.settings.most;
-            if enough || self.stopped() || self.at_floor(&last_screening) {
+            let Some(chosen) = self.next(&last_screening) else {
+                if self.reconsider() {
+                    continue;
+                }
                 break;
-            }
-            // Where a plain structure along time explains more, no effect of the library is at work, but
-            // something that happens at its own time.
-            let single = self.best_addition(&last_screening).filter(|best| !self.in_time(best));
-            let chosen = single
-                .or_else(|| self.best_pair(&last_screening).filter(|best| !self.in_time(best)));
-            let Some(chosen) = chosen else { break };
+            };
             if let Some((old, better)) = self.other_form(&chosen) {
                 self.replace(old, better);
                 continue;
@@ -102,6 +106,18 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         }
         self.observer.event(&Event::Finishing);
         self.report(&base, &first_screening.unwrap_or_default(), &last_screening)
+    }
+
+    /// What to add, if anything.
+    fn next(&mut self, screened: &[Screened]) -> Option<Tried> {
+        let enough = self.ladder.added().len() >= self.settings.most;
+        if enough || self.stopped() || self.at_floor(screened) {
+            return None;
+        }
+        // Where a plain structure along time explains more, no effect of the library is at work, but
+        // something that happens at its own time.
+        let single = self.best_addition(screened).filter(|best| !self.in_time(best));
+        single.or_else(|| self.best_pair(screened).filter(|best| !self.in_time(best)))
     }
 
     fn stopped(&self) -> bool {
@@ -176,7 +192,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let best = tried.swap_remove(chosen);
         let rivals =
             tried.iter().filter(|rival| as_good(rival, &best, before) && !self.at_bound(rival));
-        self.ladder.rivals(best.terms[0], rivals.map(|rival| rival.terms[0]).collect());
+        let rivals = rivals.map(|rival| rival.terms[0]).collect();
+        let others = tried.iter().map(|other| (other.terms[0], other.p_value)).collect();
+        self.ladder.contest(best.terms[0], others, rivals);
         Some(best)
     }
 
@@ -229,43 +247,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         Tried::new(&[term], fit, p_value)
     }
 
-    /// Another form of an effect that is in the model already, with which the model leaves no more than
-    /// with a new effect beside the form that it has.
-    fn other_form(&self, chosen: &Tried) -> Option<(usize, Tried)> {
-        let main = |term: usize| self.family.form_of(term).unwrap_or(term);
-        let weights = weights(self.family.doubt(), &self.fit.residual);
-        let screening = self.screening(&[], &weights);
-        let mut best: Option<(usize, Tried)> = None;
-        for old in self.ladder.added() {
-            let forms = (0..self.family.terms().len())
-                .filter(|&form| form != old && main(form) == main(old))
-                .collect::<Vec<_>>();
-            if forms.is_empty() || self.stopped() {
-                continue;
-            }
-            let without = self.fit.model.without(self.family, old);
-            let without = fit::refine(self.family, without, &self.fitted);
-            for form in forms {
-                let values = screen::best_values(self.family, &without, &screening, form);
-                let Some(values) = values else { continue };
-                let tried = self.tried_from(&without, form, &values, chosen.p_value);
-                let leaves = best.as_ref().map_or(chosen.square, |(_, best)| best.square);
-                if tried.square <= leaves && self.confirmed(&tried.fit) {
-                    best = Some((old, tried));
-                }
-            }
-        }
-        best
-    }
-
-    fn replace(&mut self, old: usize, tried: Tried) {
-        let (from, to) = (old, tried.terms[0]);
-        let terms = self.family.terms();
-        self.observer.event(&Event::Replaced { from: &terms[from].name, to: &terms[to].name });
-        self.fit = tried.fit;
-        self.ladder.replace(from, to, &self.fit);
-    }
-
     /// Whether a parameter of the tried term ended at a limit of its search: what the term says beyond
     /// a simpler one is then not in the data.
     fn at_bound(&self, tried: &Tried) -> bool {
@@ -276,31 +257,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             let near = |limit: f64| (value - limit).abs() <= 1e-3 * limit.abs().max(1e-12);
             near(parameter.lower) || near(parameter.upper)
         })
-    }
-
-    /// Every candidate in its main form, or in another one that is clearly better. Other forms are only
-    /// looked at where the main form is in the running.
-    fn with_forms(&self, tried: Vec<Tried>) -> Vec<Tried> {
-        let before = square(&self.fit);
-        let best = tried.iter().map(|main| main.square).fold(before, f64::min);
-        let hopeful = before - HOPEFUL * (before - best);
-        let better = |main: Tried| if main.square <= hopeful { self.best_form(main) } else { main };
-        tried.into_iter().map(better).collect()
-    }
-
-    /// The main form of an effect, or another one that is clearly better.
-    fn best_form(&self, main: Tried) -> Tried {
-        let weights = weights(self.family.doubt(), &self.fit.residual);
-        let screening = self.screening(&[], &weights);
-        (0..self.family.terms().len())
-            .filter(|&form| self.family.form_of(form) == Some(main.terms[0]))
-            .filter_map(|form| {
-                let values = screen::best_values(self.family, &self.fit, &screening, form)?;
-                Some(self.tried(form, &values, main.p_value))
-            })
-            .filter(|form| form.square < main.square * BETTER_FORM)
-            .min_by(|a, b| a.square.total_cmp(&b.square))
-            .unwrap_or(main)
     }
 
     /// Whether a step or a sine in time explains more of the residual than what has been tried. Two effects
@@ -330,50 +286,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             seed: self.settings.seed,
         };
         look(self.family, &view)
-    }
-
-    /// Whether no other view of the error contradicts: what really acts on the plant helps
-    /// in every view, unless something else that is missing spoils that view.
-    fn confirmed(&self, fit: &Fit) -> bool {
-        let before = self.ladder.views();
-        let after = self.family.views(&fit.model, &self.split);
-        let old = self.split.rms(&self.fit.residual);
-        let new = self.split.rms(&fit.residual);
-        // A view may grow by as much as the residual itself falls.
-        let allowed = |old: f64, new: f64| (old / new).max(CONTRADICTION);
-        let fit = allowed(old.fit, new.fit);
-        let validation = allowed(old.validation, new.validation);
-        after.iter().all(|(name, error)| {
-            before.get(name).is_none_or(|old| {
-                error.validation <= validation * old.validation || error.fit <= fit * old.fit
-            })
-        })
-    }
-
-    /// Whether a fit is better in every view in which the present model leaves no more than noise may.
-    fn stands_out(&self, fit: &Fit) -> bool {
-        let noisy = self.within_noise();
-        let after = if noisy.is_empty() {
-            BTreeMap::new()
-        } else {
-            self.family.views(&fit.model, &self.split)
-        };
-        noisy.iter().all(|(name, before)| {
-            after.get(name).is_none_or(|error| {
-                CONTRADICTION * error.fit < before.fit
-                    && CONTRADICTION * error.validation < before.validation
-            })
-        })
-    }
-
-    /// Views in which the present model leaves no more than the noise of the measurement may.
-    fn within_noise(&self) -> BTreeMap<String, SplitError> {
-        let noise = self.family.view_noise();
-        let mut views = self.ladder.views();
-        views.retain(|name, error| {
-            noise.get(name).is_some_and(|noise| error.fit.max(error.validation) <= *noise)
-        });
-        views
     }
 
     fn add(&mut self, tried: Tried) {

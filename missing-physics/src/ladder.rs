@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 use crate::fit::Fit;
 use crate::metrics::SplitMetrics;
 use crate::report::{Ambiguity, Candidate, Rung, SplitError};
@@ -18,9 +18,22 @@ pub struct Ladder<'a, F: ModelFamily + ?Sized> {
     rungs: Vec<Rung>,
     ranking: Vec<Vec<Candidate>>,
     added: Vec<usize>,
-    /// Terms with those that did as well when they were added.
-    rivals: Vec<(usize, Vec<usize>)>,
+    /// The model of each rung.
+    models: Vec<Fitted>,
+    contests: Vec<Contest>,
 }
+
+/// A term and what was tried in its place.
+struct Contest {
+    term: usize,
+    /// With p-values.
+    others: Vec<(usize, f64)>,
+    /// Those of them that do as well.
+    rivals: Vec<usize>,
+}
+
+/// Between the names of effects that were added together.
+const JOINED: &str = " + ";
 
 impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
     pub(crate) fn new(family: &'a F, split: Split, fitted: Vec<f64>) -> Self {
@@ -31,7 +44,8 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
             rungs: Vec::new(),
             ranking: Vec::new(),
             added: Vec::new(),
-            rivals: Vec::new(),
+            models: Vec::new(),
+            contests: Vec::new(),
         }
     }
 
@@ -40,13 +54,14 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         let name = (!added.is_empty()).then(|| self.joined(added));
         let rung = self.rung(name, fit, p_value);
         self.rungs.push(rung);
+        self.models.push(fit.model.clone());
     }
 
     /// Names of terms that were added together.
     pub(crate) fn joined(&self, terms: &[usize]) -> String {
         let names: Vec<&str> =
             terms.iter().map(|&term| self.family.terms()[term].name.as_str()).collect();
-        names.join(" + ")
+        names.join(JOINED)
     }
 
     /// Takes back all that has been added.
@@ -54,7 +69,8 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         self.rungs.truncate(1);
         self.ranking.truncate(1);
         self.added.clear();
-        self.rivals.clear();
+        self.models.truncate(1);
+        self.contests.clear();
     }
 
     /// Replaces the last rung by one without `term`.
@@ -63,20 +79,41 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         if let Some(last) = self.rungs.pop() {
             let rung = self.rung(last.added, fit, last.p_value);
             self.rungs.push(rung);
+            self.models.pop();
+            self.models.push(fit.model.clone());
         }
     }
 
-    /// Replaces the last rung by one in which a term has another form.
-    pub(crate) fn replace(&mut self, from: usize, to: usize, fit: &Fit) {
-        self.added.iter_mut().filter(|term| **term == from).for_each(|term| *term = to);
-        self.rivals.iter_mut().filter(|(term, _)| *term == from).for_each(|(term, _)| *term = to);
-        if let Some(last) = self.rungs.pop() {
-            let names = [from, to].map(|term| self.family.terms()[term].name.as_str());
-            let renamed = |name: String| if name == names[0] { names[1].to_owned() } else { name };
-            let rung = self.rung(last.added.map(renamed), fit, last.p_value);
-            self.rungs.push(rung);
-            self.ranking.pop();
+    /// Replaces the rungs that have a term by those in which another one, or another form of it, is in its
+    /// place; `p_value` is that of the new one.
+    pub(crate) fn replace(&mut self, from: usize, to: usize, fits: &[Fit], p_value: f64) {
+        let of = |term: &mut usize| *term = if *term == from { to } else { *term };
+        self.added.iter_mut().for_each(of);
+        self.contests.iter_mut().for_each(|contest| of(&mut contest.term));
+        let names = [from, to].map(|term| self.family.terms()[term].name.as_str());
+        let rungs: Vec<usize> = self.rungs_with(from).collect();
+        for (k, fit) in rungs.into_iter().zip(fits) {
+            let old = &self.rungs[k];
+            let renamed = |added: &String| {
+                let parts: Vec<&str> = added.split(JOINED).collect();
+                let new = parts.iter().map(|part| if *part == names[0] { names[1] } else { part });
+                new.collect::<Vec<_>>().join(JOINED)
+            };
+            let added = old.added.as_ref().map(renamed);
+            let p_value = if added == old.added { old.p_value } else { Some(p_value) };
+            self.rungs[k] = self.rung(added, fit, p_value);
+            self.models[k] = fit.model.clone();
         }
+        self.ranking.pop();
+    }
+
+    fn rungs_with(&self, term: usize) -> impl Iterator<Item = usize> {
+        (0..self.models.len()).filter(move |&k| self.models[k].terms.contains(&term))
+    }
+
+    /// The model of every rung that has a term.
+    pub(crate) fn models_with(&self, term: usize) -> impl Iterator<Item = &Fitted> {
+        self.rungs_with(term).map(|k| &self.models[k])
     }
 
     pub(crate) fn rank(&mut self, screened: &[Screened]) {
@@ -89,8 +126,26 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         self.ranking.push(row.collect());
     }
 
+    /// Notes what else was tried in the place of a term, with p-values, and which of that did as well.
+    pub(crate) fn contest(&mut self, term: usize, others: Vec<(usize, f64)>, rivals: Vec<usize>) {
+        self.contests.push(Contest { term, others, rivals });
+    }
+
+    /// Terms of the model, each with what was tried in its place and is not in the model.
+    pub(crate) fn contested(&self) -> Vec<(usize, Vec<(usize, f64)>)> {
+        let here = |contest: &&Contest| self.added.contains(&contest.term);
+        let absent = |(term, _): &(usize, f64)| !self.added.contains(term);
+        let open = |contest: &Contest| {
+            (contest.term, contest.others.iter().copied().filter(absent).collect())
+        };
+        self.contests.iter().filter(here).map(open).collect()
+    }
+
+    /// Which of those do as well in the place of `term` as it does.
     pub(crate) fn rivals(&mut self, term: usize, rivals: Vec<usize>) {
-        self.rivals.push((term, rivals));
+        if let Some(contest) = self.contests.iter_mut().find(|contest| contest.term == term) {
+            contest.rivals = rivals;
+        }
     }
 
     /// Number of rungs.
@@ -114,22 +169,17 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         self.rungs.last().and_then(|rung| rung.error.get(&key)).map_or(f64::NAN, |e| e.validation)
     }
 
-    /// Added effects with the rivals that have nothing more to say once the effect is in: which of
-    /// them is at work, this data cannot tell.
-    pub(crate) fn ambiguous(&self, screened: &[Screened], alpha: f64) -> Vec<Ambiguity> {
-        let idle = |term: &usize| {
-            !self.added.contains(term)
-                && screened.iter().any(|c| c.term == *term && (c.p_value > alpha || c.gain < 0.02))
-        };
+    /// Added effects with those that do as well in their place: which of them is at work, this data
+    /// cannot tell.
+    pub(crate) fn ambiguous(&self) -> Vec<Ambiguity> {
         let name = |term: usize| self.family.terms()[term].name.clone();
-        self.rivals
+        self.contests
             .iter()
-            .filter(|(term, _)| self.added.contains(term))
-            .filter_map(|(term, rivals)| {
-                let effects: Vec<String> = std::iter::once(*term)
-                    .chain(rivals.iter().copied().filter(idle))
-                    .map(name)
-                    .collect();
+            .filter(|contest| self.added.contains(&contest.term))
+            .filter_map(|contest| {
+                let rivals = contest.rivals.iter().filter(|rival| !self.added.contains(rival));
+                let effects: Vec<String> =
+                    std::iter::once(&contest.term).chain(rivals).copied().map(name).collect();
                 let experiment = self.family.experiment(&effects);
                 (effects.len() > 1).then_some(Ambiguity { effects, experiment })
             })

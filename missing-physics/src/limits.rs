@@ -66,7 +66,7 @@ fn shown<F: ModelFamily + ?Sized>(
     if evidence.within_noise.is_empty() {
         return size;
     }
-    let wanted = crate::climb::CONTRADICTION.powi(2) - 1.0;
+    let wanted = crate::climb::views::CONTRADICTION.powi(2) - 1.0;
     for _ in 0..STEPS {
         let after = family.views(&with(family, evidence, candidate, size), split);
         let growth = |(name, before): (&String, &SplitError)| {

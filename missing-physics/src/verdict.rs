@@ -82,7 +82,7 @@ pub fn report<F: ModelFamily + ?Sized>(
     ladder: Ladder<'_, F>,
     evidence: &Evidence<'_>,
 ) -> Discovery {
-    let ambiguous = ladder.ambiguous(evidence.screened, evidence.alpha);
+    let ambiguous = ladder.ambiguous();
     let (rungs, ranking, added, split) = ladder.into_parts();
     let quantity = family.quantity();
     let floor = noise::floor_of(family, &evidence.last.residual);
