@@ -126,18 +126,19 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     fn screen(&mut self) -> Vec<Screened> {
+        // Every form takes part: what a soft contact leaves, say, a stiff one shows nothing of.
         let candidates: Vec<usize> = (0..self.family.terms().len())
             .filter(|&term| {
-                self.family.joins(&self.fit.model, term)
-                    && self.family.form_of(term).is_none()
-                    && !self.excluded.contains(&term)
+                let main = self.family.form_of(term).unwrap_or(term);
+                let excluded = [term, main].iter().any(|term| self.excluded.contains(term));
+                self.family.joins(&self.fit.model, term) && !excluded
             })
             .collect();
         let rung = self.ladder.height();
         self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
         let weights = weights(self.family.doubt(), &self.fit.residual);
         let screening = self.screening(&candidates, &weights);
-        let mut screened = screen::screen(self.family, &self.fit, &screening);
+        let mut screened = self.one_of_each(screen::screen(self.family, &self.fit, &screening));
         // A flexible term gains much by chance: what gains more than chance does stands before it.
         screened.sort_by_key(|candidate| candidate.p_value > self.settings.alpha);
         screened

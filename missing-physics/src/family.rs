@@ -193,8 +193,8 @@ pub trait ModelFamily: Sync {
         crate::shapes::columns(self, model, prediction, term, shape)
     }
 
-    /// The term that this one is another form of, if any. A form is not screened by itself: it is tried
-    /// where the main form is a likely candidate, and taken where it is clearly better.
+    /// The term that this one is another form of, if any. A form stands for its effect only where it is
+    /// clearly better than the main one.
     fn form_of(&self, _term: usize) -> Option<usize> {
         None
     }

@@ -3,7 +3,7 @@
 use super::Search;
 use crate::family::ModelFamily;
 use crate::fit;
-use crate::screen::{self, weights};
+use crate::screen::{self, Screened, weights};
 use crate::tried::{Tried, square};
 
 /// Another form of an effect is taken where it leaves at most this share of the main form's squared
@@ -14,6 +14,30 @@ const BETTER_FORM: f64 = 0.8;
 const HOPEFUL: f64 = 0.4;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
+    /// Of every effect its main form, or the other one that shows clearly more.
+    pub(super) fn one_of_each(&self, screened: Vec<Screened>) -> Vec<Screened> {
+        let mains: Vec<Screened> = screened
+            .iter()
+            .filter(|candidate| self.family.form_of(candidate.term).is_none())
+            .cloned()
+            .collect();
+        let left = |candidate: &Screened| [1.0 - candidate.gain, 1.0 - candidate.gain_all];
+        let clearly = |form: &Screened, main: &Screened| {
+            left(form).iter().zip(left(main)).all(|(form, main)| *form < BETTER_FORM * main)
+        };
+        let mut chosen: Vec<Screened> = mains
+            .into_iter()
+            .map(|main| {
+                let form = screened.iter().find(|form| {
+                    self.family.form_of(form.term) == Some(main.term) && clearly(form, &main)
+                });
+                form.cloned().unwrap_or(main)
+            })
+            .collect();
+        chosen.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        chosen
+    }
+
     /// Another form of an effect that is in the model already, with which the model leaves no more than
     /// with a new effect beside the form that it has.
     pub(super) fn other_form(&self, chosen: &Tried) -> Option<(usize, Tried)> {
