@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::discover::{DiscoverError, Settings, evaluate, suggest, terms};
 use crate::family::{Fitted, ModelFamily};
 use crate::ladder;
-use crate::report::{Rung, SplitError};
+use crate::report::{Candidate, Rung, SplitError};
 use crate::split::Split;
 
 /// Another view contradicts an effect where its error grows by more than this factor.
@@ -115,10 +115,17 @@ fn anew<F: ModelFamily + ?Sized>(
     let once = Settings { base, exclude: settings.exclude.clone(), most: 0, ..*settings };
     let found = suggest(family, &once, &mut ())?;
     let candidates = found.ranking.first().map_or(&[][..], Vec::as_slice);
-    let Some(candidate) = candidates.iter().find(|c| c.effect == added) else { return Ok(()) };
+    // Another form of the effect may be the one that shows more here.
+    let main = |name: &str| {
+        let term = family.terms().iter().position(|term| term.name == name)?;
+        Some(family.form_of(term).unwrap_or(term))
+    };
+    let added = main(added);
+    let is_added = |candidate: &&Candidate| added.is_some() && main(&candidate.effect) == added;
+    let Some(candidate) = candidates.iter().find(is_added) else { return Ok(()) };
     here.gain = Some(candidate.gain);
     here.p_value = Some(candidate.p_value);
     let likely = candidates.iter().filter(|c| c.p_value <= settings.alpha && c.gain > 0.0);
-    here.place = likely.clone().position(|c| c.effect == added).map(|before| before + 1);
+    here.place = likely.clone().position(|c| is_added(&c)).map(|before| before + 1);
     Ok(())
 }

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use crate::climb::views::CONTRADICTION;
 use crate::family::ModelFamily;
 use crate::fit::Fit;
 use crate::generic;
 use crate::ladder::{self, Ladder};
 use crate::limits::limits;
 use crate::noise;
-use crate::report::{Discovery, SplitError, Verdict, Where};
+use crate::report::{Discovery, Rung, SplitError, Verdict, Where};
 use crate::screen::Screened;
 use crate::split::Split;
 use crate::where_it_fails;
@@ -74,6 +75,33 @@ pub fn explains_little<F: ModelFamily + ?Sized>(
     let excess = |rms: f64| (rms * rms - floor * floor).max(0.0);
     structure(family, &evidence.where_last, left, floor).is_some()
         && excess(left) > (1.0 - MOST) * excess(before)
+}
+
+/// Effects with which another view than that of `quantity` grows, on fitted and held-out data alike, though
+/// the error of `quantity` fell by more.
+fn contradictions(rungs: &[Rung], quantity: &str) -> Vec<String> {
+    let mut said = Vec::new();
+    for pair in rungs.windows(2) {
+        let Some(added) = &pair[1].added else { continue };
+        for (key, after) in pair[1].error.iter().filter(|(key, _)| !key.starts_with(quantity)) {
+            let grown = |before: &SplitError| {
+                after.fit > CONTRADICTION * before.fit
+                    && after.validation > CONTRADICTION * before.validation
+            };
+            let Some(before) = pair[0].error.get(key).filter(|before| grown(before)) else {
+                continue;
+            };
+            let (view, unit) = key.rsplit_once('_').unwrap_or((key, ""));
+            said.push(format!(
+                "The views disagree about {added}: with it the {quantity} error falls, but the {} grows from \
+                 {} to {}. Confirm it on another recording (--validate) before you build on it.",
+                view.replace('_', " "),
+                crate::quantity::quantity(before.validation, unit),
+                crate::quantity::quantity(after.validation, unit),
+            ));
+        }
+    }
+    said
 }
 
 /// The report, but for seed and time.
@@ -145,7 +173,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         let coordinate = family.coordinates().iter().find(|c| c.name == place.coordinate)?;
         family.generic_term(coordinate, &generic::shape(coordinate, &evidence.last.residual))
     });
-    let mut notes = Vec::new();
+    let mut notes = contradictions(&rungs, &quantity.name);
     if evidence.interrupted {
         notes.push("Stopped before the end: further effects were not looked for.".to_owned());
     }

@@ -124,6 +124,8 @@ pub fn ladder(discovery: &Discovery, first: &str) -> String {
     let mut table = Table::new(&columns);
     for rung in &discovery.ladder {
         let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
+        // Effects that were added together stand below each other: the table is wide as it is.
+        let name = name.replace(" + ", "\n+ ");
         let p_value = rung.p_value.map_or_else(|| "-".to_owned(), words::p_value);
         let cells = ladder_cells(rung, &names, largest, fitted);
         table.row(std::iter::once(name).chain(cells).chain(tested.then_some(p_value)));

@@ -87,6 +87,8 @@ const APART: [(&[&str], &str); 9] = [
 
 /// The experiment that tells these effects apart.
 pub fn experiment(terms: &[String]) -> String {
+    let main = |term: &String| term.split(':').next().unwrap_or_default().to_owned();
+    let terms: Vec<String> = terms.iter().map(main).collect();
     let matching = |names: &[&str]| terms.iter().filter(|t| names.contains(&t.as_str())).count();
     let best = APART.iter().max_by_key(|(names, _)| matching(names));
     match best {
@@ -117,5 +119,7 @@ mod tests {
     fn confusable_effects_get_their_experiment() {
         let names = ["actuator-lag".to_owned(), "input-delay".to_owned()];
         assert!(experiment(&names).contains("sweep"));
+        let forms = ["stribeck:gaussian".to_owned(), "presliding:lugre".to_owned()];
+        assert!(experiment(&forms).contains("creep"));
     }
 }

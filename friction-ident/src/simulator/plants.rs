@@ -232,6 +232,8 @@ impl Plants {
         }
         for (i, start) in &fresh {
             s.direction[*i] = sign(start.used);
+            // A level may depend on the load: that of the last step was another plant's.
+            s.drive[*i] = start.command;
         }
         self.recall();
         self.scratch.level.fill(0.0);

@@ -60,6 +60,28 @@ fn windows_stay_within_segments_and_lie_side_by_side() {
     }
 }
 
+/// Windows share lanes of a batch one after the other: nothing of an earlier window may be left there.
+#[test]
+fn a_window_does_not_depend_on_those_simulated_before_it() {
+    let models: [&[&str]; 3] = [
+        &["presliding", "load-friction", "input-delay", "stribeck", "frictional-memory"],
+        &["flexible-coupling", "actuator-lag", "rising-static-friction", "drift"],
+        &["presliding:lugre", "load-friction", "position-friction:fine"],
+    ];
+    for effects in models {
+        let with = |model: Model, effect: &&str| model.with(effect, &[]).unwrap();
+        let model = effects.iter().fold(table(), with);
+        let recording = recording(&model, 1e-7, Hold::ZeroOrder);
+        let data = Data::new(&recording, &WindowOptions::new(0.1)).unwrap();
+        let mut used = Fitter::new(&model, &data);
+        for windows in data.cut().chunks(TOGETHER) {
+            let rms = |windows: Vec<Window>| windows.iter().map(|w| w.rms).collect::<Vec<f64>>();
+            let fresh = Fitter::new(&model, &data).fit(windows);
+            assert_eq!(rms(used.fit(windows)), rms(fresh), "{effects:?}");
+        }
+    }
+}
+
 #[test]
 fn a_contact_is_fitted_with_its_utilisation() {
     let model = table().with("presliding", &[("k_t", 5e5)]).unwrap();
