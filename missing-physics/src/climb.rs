@@ -138,7 +138,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.observer.event(&Event::Screening { rung, candidates: candidates.len() });
         let weights = weights(self.family.doubt(), &self.fit.residual);
         let screening = self.screening(&candidates, &weights);
-        let mut screened = self.one_of_each(screen::screen(self.family, &self.fit, &screening));
+        let mut screened = self.one_of_each(&screen::screen(self.family, &self.fit, &screening));
         // A flexible term gains much by chance: what gains more than chance does stands before it.
         screened.sort_by_key(|candidate| candidate.p_value > self.settings.alpha);
         screened

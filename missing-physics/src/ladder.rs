@@ -111,6 +111,11 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         (0..self.models.len()).filter(move |&k| self.models[k].terms.contains(&term))
     }
 
+    /// p-value with which a term was added.
+    pub(crate) fn p_value(&self, term: usize) -> Option<f64> {
+        self.rungs_with(term).next().and_then(|k| self.rungs[k].p_value)
+    }
+
     /// The model of every rung that has a term.
     pub(crate) fn models_with(&self, term: usize) -> impl Iterator<Item = &Fitted> {
         self.rungs_with(term).map(|k| &self.models[k])

@@ -14,27 +14,22 @@ const BETTER_FORM: f64 = 0.8;
 const HOPEFUL: f64 = 0.4;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// Of every effect its main form, or the other one that shows clearly more.
-    pub(super) fn one_of_each(&self, screened: Vec<Screened>) -> Vec<Screened> {
-        let mains: Vec<Screened> = screened
-            .iter()
-            .filter(|candidate| self.family.form_of(candidate.term).is_none())
-            .cloned()
-            .collect();
+    /// Of every effect its main form, or the other one that shows clearly more; best first, as `screened` is.
+    pub(super) fn one_of_each(&self, screened: &[Screened]) -> Vec<Screened> {
+        let main = |of: &Screened| self.family.form_of(of.term).unwrap_or(of.term);
         let left = |candidate: &Screened| [1.0 - candidate.gain, 1.0 - candidate.gain_all];
         let clearly = |form: &Screened, main: &Screened| {
             left(form).iter().zip(left(main)).all(|(form, main)| *form < BETTER_FORM * main)
         };
-        let mut chosen: Vec<Screened> = mains
-            .into_iter()
-            .map(|main| {
-                let form = screened.iter().find(|form| {
-                    self.family.form_of(form.term) == Some(main.term) && clearly(form, &main)
-                });
-                form.cloned().unwrap_or(main)
-            })
-            .collect();
-        chosen.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let mut chosen: Vec<Screened> = Vec::new();
+        for candidate in screened {
+            let main_form = screened.iter().find(|other| other.term == main(candidate));
+            let is_main = candidate.term == main(candidate);
+            let stands = is_main || main_form.is_none_or(|main| clearly(candidate, main));
+            if stands && chosen.iter().all(|other| main(other) != main(candidate)) {
+                chosen.push(candidate.clone());
+            }
+        }
         chosen
     }
 
@@ -52,12 +47,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             if forms.is_empty() || self.stopped() {
                 continue;
             }
+            let p_value = self.ladder.p_value(old).unwrap_or(chosen.p_value);
             let without = self.fit.model.without(self.family, old);
             let without = fit::refine(self.family, without, &self.fitted);
             for form in forms {
                 let values = screen::best_values(self.family, &without, &screening, form);
                 let Some(values) = values else { continue };
-                let tried = self.tried_from(&without, form, &values, chosen.p_value);
+                let tried = self.tried_from(&without, form, &values, p_value);
                 let leaves = best.as_ref().map_or(chosen.square, |(_, best)| best.square);
                 if tried.square <= leaves && self.confirmed(&tried.fit) {
                     best = Some((old, tried));
@@ -78,7 +74,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// The main form of an effect, or another one that is clearly better.
-    pub(super) fn best_form(&self, main: Tried) -> Tried {
+    fn best_form(&self, main: Tried) -> Tried {
         let weights = weights(self.family.doubt(), &self.fit.residual);
         let screening = self.screening(&[], &weights);
         (0..self.family.terms().len())
