@@ -89,7 +89,13 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
     pub(crate) fn replace(&mut self, from: usize, to: usize, fits: &[Fit], p_value: f64) {
         let of = |term: &mut usize| *term = if *term == from { to } else { *term };
         self.added.iter_mut().for_each(of);
-        self.contests.iter_mut().for_each(|contest| of(&mut contest.term));
+        for contest in self.contests.iter_mut().filter(|contest| contest.term == from) {
+            contest.term = to;
+            // What was as good as the one says nothing of the other; the one may be as good as it.
+            contest.rivals.clear();
+            let exchanged = contest.others.iter_mut().filter(|(other, _)| *other == to);
+            exchanged.for_each(|(other, _)| *other = from);
+        }
         let names = [from, to].map(|term| self.family.terms()[term].name.as_str());
         let rungs: Vec<usize> = self.rungs_with(from).collect();
         for (k, fit) in rungs.into_iter().zip(fits) {
@@ -146,10 +152,14 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         self.contests.iter().filter(here).map(open).collect()
     }
 
-    /// Which of those do as well in the place of `term` as it does.
+    /// Adds those that do as well in the place of `term` as it does, now that all else is there.
     pub(crate) fn rivals(&mut self, term: usize, rivals: Vec<usize>) {
         if let Some(contest) = self.contests.iter_mut().find(|contest| contest.term == term) {
-            contest.rivals = rivals;
+            for rival in rivals {
+                if !contest.rivals.contains(&rival) {
+                    contest.rivals.push(rival);
+                }
+            }
         }
     }
 

@@ -10,7 +10,8 @@ use crate::tried::{Tried, as_good, square};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// Exchanges one effect for another that leaves clearly less in its place, and says whether it did.
-    /// Where there is none, the ladder knows which others do as well.
+    /// Where there is none, the ladder knows which others do as well, beside those that did when the effect was
+    /// added: what has been added since may only mend what the wrong one of them left.
     pub(super) fn reconsider(&mut self) -> bool {
         let weights = weights(self.family.doubt(), &self.fit.residual);
         for (old, others) in self.ladder.contested() {
