@@ -157,7 +157,7 @@ pub fn closed_loop(
     let mut stuck = Vec::with_capacity(samples);
     for k in 0..samples {
         let (x, v) = (batch.position()[0], batch.velocity()[0]);
-        let sample = sample(reference, k, quantise(x, setup.encoder_resolution));
+        let sample = sample(reference, k, quantise(batch.shown()[0], setup.encoder_resolution));
         if !(x.is_finite() && v.is_finite()) {
             let effect = batch.culprit(0);
             return Err(SimulationError::NotFinite { time: sample.time, effect }.into());
@@ -249,6 +249,19 @@ mod tests {
             assert!((counts - counts.round()).abs() < 1e-6);
         }
         assert_eq!(run.recording.hold(), Hold::ZeroOrder);
+    }
+
+    #[test]
+    fn the_controller_sees_and_the_recording_holds_what_the_sensor_shows() {
+        let error = [("a", 2e-6), ("b", -1e-6), ("p", 5e-3)];
+        let table = table().with("encoder", &error).unwrap();
+        let reference = Profile::new(1e-3).round_trip(0.05, 0.1, 1.0).build(0.0, 0.02);
+        let setup = Setup { encoder_resolution: 0.0, ..Setup::default() };
+        let run = closed_loop(&table, &reference, &mut pd(), &setup).unwrap();
+        for (x, shown) in run.position.iter().zip(run.recording.require("position").unwrap()) {
+            let (sin, cos) = (std::f64::consts::TAU * x / 5e-3).sin_cos();
+            assert!((shown - x - 2e-6 * sin + 1e-6 * cos).abs() < 1e-15);
+        }
     }
 
     #[test]

@@ -8,7 +8,9 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use crate::effects::{Effect, Leg, Motion, Onset, Parameters, Role, Slot, Smooth, broadcast};
+use crate::effects::{
+    Effect, Leg, Motion, Onset, Parameters, Role, Shown, Slot, Smooth, broadcast,
+};
 use crate::model::{MASS, Model, Term, address};
 use crate::simd::sign;
 
@@ -56,6 +58,7 @@ pub struct MeasuredMotion<'a> {
     drive_force: Option<&'a [f64]>,
     segments: Vec<Range<usize>>,
     rest_velocity: f64,
+    cutoff: f64,
 }
 
 /// Share of the top speed below which a motion counts as rest, unless something else is asked for.
@@ -78,7 +81,17 @@ impl<'a> MeasuredMotion<'a> {
         let segments = std::iter::once(0..time.len()).collect();
         let rest_velocity = REST * velocity.iter().fold(0.0, |top: f64, v| top.max(v.abs()));
         let drive_force = None;
-        Ok(Self { time, position, velocity, acceleration, drive_force, segments, rest_velocity })
+        let cutoff = f64::INFINITY;
+        Ok(Self {
+            time,
+            position,
+            velocity,
+            acceleration,
+            drive_force,
+            segments,
+            rest_velocity,
+            cutoff,
+        })
     }
 
     /// The same in several pieces; contact and memory start anew in each.
@@ -109,6 +122,14 @@ impl<'a> MeasuredMotion<'a> {
     #[must_use]
     pub fn with_rest_velocity(mut self, velocity: f64) -> Self {
         self.rest_velocity = velocity;
+        self
+    }
+
+    /// The same of a motion whose smoother lets half of an amplitude pass at `frequency`, Hz, for
+    /// errors of the sensor: what was smoothed away needs no correction.
+    #[must_use]
+    pub fn with_cutoff(mut self, frequency: f64) -> Self {
+        self.cutoff = frequency;
         self
     }
 
@@ -148,6 +169,8 @@ fn check(channel: &'static str, values: &[f64], time: &[f64]) -> Result<(), Moti
 
 /// The force that the drive must command for `model` to follow `motion`, N or N m.
 pub fn force_along(model: &Model, motion: &MeasuredMotion<'_>) -> Vec<f64> {
+    let corrected = Corrected::of(model, motion);
+    let motion = &corrected.motion(motion);
     let walk = Walk::new(model, motion);
     let mut force = walk.smooth.clone();
     for ((force, friction), a) in force.iter_mut().zip(&walk.friction).zip(motion.acceleration) {
@@ -155,6 +178,7 @@ pub fn force_along(model: &Model, motion: &MeasuredMotion<'_>) -> Vec<f64> {
     }
     add(&mut force, &walk.attached);
     walk.invert_drive(model, &mut force);
+    walk.withhold(model, &mut force);
     force
 }
 
@@ -177,6 +201,8 @@ fn mean_sign(from: f64, to: f64) -> f64 {
 
 /// Splits [`force_along`] into columns.
 pub fn columns_along(model: &Model, motion: &MeasuredMotion<'_>) -> Columns {
+    let corrected = Corrected::of(model, motion);
+    let motion = &corrected.motion(motion);
     let walk = Walk::new(model, motion);
     let mut addresses = vec![MASS.to_owned()];
     let mut columns = vec![motion.acceleration.to_vec()];
@@ -194,7 +220,45 @@ pub fn columns_along(model: &Model, motion: &MeasuredMotion<'_>) -> Columns {
     for column in columns.iter_mut().chain(std::iter::once(&mut rest)) {
         walk.invert_drive(model, column);
     }
+    walk.withhold(model, &mut rest);
     Columns { addresses, columns, rest }
+}
+
+/// A motion without the errors of the model's sensor.
+struct Corrected<'a> {
+    position: Cow<'a, [f64]>,
+    velocity: Cow<'a, [f64]>,
+    acceleration: Cow<'a, [f64]>,
+}
+
+impl<'a> Corrected<'a> {
+    fn of(model: &Model, motion: &MeasuredMotion<'a>) -> Self {
+        let mut corrected = Self {
+            position: motion.position.into(),
+            velocity: motion.velocity.into(),
+            acceleration: motion.acceleration.into(),
+        };
+        for term in model.terms() {
+            let Some(sensor) = term.effect().sensor() else { continue };
+            let shown = &mut Shown {
+                position: corrected.position.to_mut(),
+                velocity: corrected.velocity.to_mut(),
+                acceleration: corrected.acceleration.to_mut(),
+                cutoff: motion.cutoff,
+            };
+            sensor.correct(term.values(), shown);
+        }
+        corrected
+    }
+
+    fn motion(&'a self, motion: &MeasuredMotion<'a>) -> MeasuredMotion<'a> {
+        MeasuredMotion {
+            position: &self.position,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+            ..motion.clone()
+        }
+    }
 }
 
 /// A model's friction along a motion.
@@ -405,6 +469,13 @@ impl<'a> Walk<'a> {
                 let time = &self.motion.time[segment.clone()];
                 drive.invert(term.values(), time, &mut force[segment.clone()]);
             }
+        }
+    }
+
+    /// Adds what the drive never delivers of the recorded command.
+    fn withhold(&self, model: &Model, force: &mut [f64]) {
+        for drive in model.terms().iter().filter_map(|term| Some((term, term.effect().drive()?))) {
+            drive.1.withhold(drive.0.values(), &self.drive_force, force);
         }
     }
 }

@@ -19,6 +19,13 @@ pub fn derivative(time: &[f64], values: &[f64]) -> Vec<f64> {
     all
 }
 
+/// A quantile of the absolute values.
+pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
+    let index = ((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1));
+    *sizes.select_nth_unstable_by(index, f64::total_cmp).1
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

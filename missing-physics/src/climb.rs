@@ -218,7 +218,25 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             Tried::new(&pair.terms, fit, pair.p_value)
         });
         let tried = tried.collect();
-        self.helpful(tried, LEAST_PAIR).into_iter().next()
+        self.helpful(tried, LEAST_PAIR).into_iter().next().map(|pair| self.without_idle(pair))
+    }
+
+    /// A pair, or the one of the two that does as well alone.
+    fn without_idle(&self, pair: Tried) -> Tried {
+        let alone = pair.terms.iter().find_map(|&idle| {
+            let fit = self.without(&pair.fit, idle)?;
+            let rest: Vec<usize> = pair.terms.iter().copied().filter(|&t| t != idle).collect();
+            Some(Tried::new(&rest, fit, pair.p_value))
+        });
+        alone.unwrap_or(pair)
+    }
+
+    /// The model of `fit` without a term, where its held-out error is as small.
+    fn without(&self, fit: &Fit, term: usize) -> Option<Fit> {
+        let lean = fit::refine(self.family, fit.model.without(self.family, term), &self.fitted);
+        let error = |fit: &Fit| self.split.rms(&fit.residual).validation.powi(2);
+        let as_small = error(&lean) * (1.0 - 0.5 * self.settings.least_gain) <= error(fit);
+        as_small.then_some(lean)
     }
 
     /// Those that lower the held-out squared error by a share of `least` and that no other view
@@ -304,11 +322,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn drop_idle(&mut self, newest: usize) {
         let added = self.ladder.added();
         for &term in &added[..added.len().saturating_sub(newest)] {
-            let with = self.split.rms(&self.fit.residual).validation;
-            let without =
-                fit::refine(self.family, self.fit.model.without(self.family, term), &self.fitted);
-            let error = self.split.rms(&without.residual).validation;
-            if error.powi(2) * (1.0 - 0.5 * self.settings.least_gain) <= with.powi(2) {
+            if let Some(without) = self.without(&self.fit, term) {
                 self.observer.event(&Event::Dropped { effect: &self.family.terms()[term].name });
                 self.fit = without;
                 self.ladder.drop(term, &self.fit);

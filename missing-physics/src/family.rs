@@ -199,6 +199,12 @@ pub trait ModelFamily: Sync {
         None
     }
 
+    /// Whether the term acts on what the sensor shows, not on the plant: it is then only added where it lowers
+    /// the error in every view, as what is shown shows in all of them.
+    fn is_of_sensor(&self, _term: usize) -> bool {
+        false
+    }
+
     /// Whether the term can be added to the model.
     fn joins(&self, model: &Fitted, term: usize) -> bool {
         !model.terms.contains(&term)

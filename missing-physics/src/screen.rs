@@ -312,7 +312,13 @@ fn held_out<F: ModelFamily + ?Sized>(
     }
     let target = part(&fit.residual, true);
     let products = gram(&columns);
-    let amplitude = constrained(&products, &moment(&columns, &target), &trial.positive);
+    let mut amplitude = constrained(&products, &moment(&columns, &target), &trial.positive);
+    if amplitudes(&family.terms()[term]).is_empty() {
+        // The column is the whole effect: there is not more of it, however little the fitted blocks show.
+        for amplitude in &mut amplitude {
+            *amplitude = amplitude.min(1.0);
+        }
+    }
     // The model's own parameters adapt to what is left, with and without the trial.
     let own_gram = gram(&own);
     let all: Vec<usize> = (0..own.len()).collect();

@@ -24,6 +24,10 @@ const SHARE: f64 = 0.08;
 /// leave no structure.
 const MOST: f64 = 0.5;
 
+/// Where the held-out blocks err by this factor more than the fitted ones, something acts there that hardly
+/// acts in the others.
+const UNEVEN: f64 = 2.0;
+
 /// All that the verdict rests on.
 pub struct Evidence<'a> {
     /// Where the base model fails.
@@ -117,10 +121,12 @@ pub fn report<F: ModelFamily + ?Sized>(
     let mut noise_floor = family.noise();
     noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
 
-    let left = split.rms(&evidence.last.residual).validation;
+    let error = split.rms(&evidence.last.residual);
+    let left = error.validation;
+    let uneven = error.fit > 0.0 && left > UNEVEN * error.fit;
     let structure = structure(family, &evidence.where_last, left, floor);
     let moves = structure.is_some() && evidence.within_noise.is_empty();
-    let verdict = match (added.is_empty(), moves) {
+    let verdict = match (added.is_empty(), moves || uneven) {
         (true, false) => Verdict::NothingMissing,
         (true, true) => Verdict::Unexplained,
         (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
@@ -160,6 +166,16 @@ pub fn report<F: ModelFamily + ?Sized>(
         if !evidence.within_noise.is_empty() {
             summary.push_str(" The motion shows none of it: that may be the sensor's own.");
         }
+    }
+    if uneven {
+        let place = evidence.where_last.first().filter(|place| place.p_value <= evidence.alpha);
+        let place = place.map_or(String::new(), |place| format!(": {}", place.note));
+        let _ = write!(
+            summary,
+            " The held-out part errs {:.1} times as much as the fitted one: something acts there that \
+             hardly acts in the rest{place}.",
+            left / error.fit
+        );
     }
     for choice in &ambiguous {
         let _ = write!(

@@ -29,6 +29,8 @@ pub enum Hidden {
     ShearThinning,
     /// A spring about mid-stroke; N at its end.
     Spring,
+    /// The weight of a pendulum, on a rotary axis; N at the rim.
+    Pendulum,
     /// Friction in proportion to the force of the drive, beside a strong spring; share.
     LoadFriction,
     /// Warm-up: the friction level relaxes; N at the start.
@@ -41,6 +43,10 @@ pub enum Hidden {
     ActuatorLag,
     /// A delay of the force; s.
     InputDelay,
+    /// The drive gives no more than a share of the force that the motion asks for; what is cut off, as a share.
+    Saturation,
+    /// An error within each period of the encoder; amplitude, m.
+    Encoder,
     /// Part of the friction hangs behind a gap; friction behind the gap, N.
     Backlash,
     /// Part of the mass hangs behind a spring and a damper; share of the mass.
@@ -108,6 +114,7 @@ impl Case {
             Self::listed(H::QuadraticDrag, "quadratic-drag", "quadratic-drag"),
             Self::listed(H::ShearThinning, "shear-thinning", "shear-thinning"),
             Self::listed(H::Spring, "spring", "spring"),
+            Self::listed(H::Pendulum, "gravity-pendulum", "gravity-pendulum"),
             Self::listed(H::LoadFriction, "load-friction", "load-friction").beside("spring"),
             Self::listed(H::Drift, "drift", "drift"),
             Self::listed(H::RisingStatic, "rising-static-friction", "rising-static-friction"),
@@ -115,6 +122,8 @@ impl Case {
                 .beside("stribeck"),
             Self::listed(H::ActuatorLag, "actuator-lag", "actuator-lag"),
             Self::listed(H::InputDelay, "input-delay", "input-delay"),
+            Self::listed(H::Saturation, "saturation", "saturation"),
+            Self::listed(H::Encoder, "encoder", "encoder"),
             Self::listed(H::Backlash, "backlash", "backlash"),
             Self::listed(H::FlexibleCoupling, "flexible-coupling", "flexible-coupling"),
             Self::unlisted(H::TimePeriodic, "periodic in time", &["time"]),
@@ -136,7 +145,12 @@ impl Case {
         let alone: Vec<Self> = Self::singles()
             .into_iter()
             .filter(|case| {
-                !case.answers.is_empty() && case.beside.is_empty() && case.coordinates.is_empty()
+                // A pendulum needs an axis of its own kind.
+                let linear = case.kinds != [Hidden::Pendulum];
+                linear
+                    && !case.answers.is_empty()
+                    && case.beside.is_empty()
+                    && case.coordinates.is_empty()
             })
             .collect();
         let mut pairs = Vec::new();

@@ -61,6 +61,8 @@ fn limits(kind: Hidden) -> (f64, f64, f64) {
         Hidden::Stribeck | Hidden::GaussianStribeck | Hidden::RisingStatic | Hidden::Backlash => {
             (2.0, 1e-3, 8.0)
         }
+        Hidden::Saturation => (0.1, 1e-3, 0.6),
+        Hidden::Encoder => (5e-6, 1e-7, 5e-5),
         Hidden::LoadFriction => (0.1, 1e-3, 0.5),
         Hidden::FlexibleCoupling => (0.2, 1e-3, 0.6),
         _ => (2.0, 1e-3, 60.0),

@@ -25,6 +25,10 @@ pub const NOISE: f64 = 0.15;
 const IMPACT: (f64, f64) = (3e6, 3e3);
 /// Stiffness of the spring beside load-dependent friction, N/m.
 const STRONG_SPRING: f64 = 600.0;
+/// Radius that turns the table into a rotary axis, m.
+const RADIUS: f64 = 0.05;
+/// Largest acceleration, m/s^2, and speed, m/s, of the motion that tells much.
+const FASTEST: (f64, f64) = (6.0, 0.3);
 
 /// A hidden effect with its size and three random numbers 0..1.
 #[derive(Clone, Copy, Debug)]
@@ -84,6 +88,9 @@ impl Table {
                 Hidden::FrictionalMemory => (&["frictional-memory.tau_L"], law.size),
                 Hidden::ActuatorLag => (&["actuator-lag.tau"], law.size),
                 Hidden::InputDelay => (&["input-delay.T_d"], law.size),
+                Hidden::Pendulum => (&["gravity-pendulum.M"], law.size * RADIUS),
+                Hidden::Saturation => (&["saturation.u_max"], self.limit()),
+                Hidden::Encoder => (&["encoder.a", "encoder.b"], law.size),
                 Hidden::Backlash => (&["backlash.F_L"], law.size),
                 Hidden::FlexibleCoupling => (&["flexible-coupling.m_L"], law.size * self.mass),
                 _ => return None,
@@ -155,6 +162,7 @@ impl Table {
                 Hidden::QuadraticDrag => size * v * v.abs() / 0.04,
                 Hidden::ShearThinning => size * (v / (5e-3 * 5f64.powf(draw[0]))).tanh(),
                 Hidden::Spring => size * (x - 0.06) / 0.06,
+                Hidden::Pendulum => size * ((x - self.hangs_at(law)) / RADIUS).sin(),
                 Hidden::LoadFriction => STRONG_SPRING * (x - 0.06),
                 Hidden::TimePeriodic => size * (TAU * (t / (0.3 + 0.9 * draw[0]) + draw[1])).sin(),
                 Hidden::Dent => {
@@ -165,6 +173,27 @@ impl Table {
             }
         };
         self.viscous * v + self.offset + self.hidden.iter().map(extra).sum::<f64>()
+    }
+
+    /// Place on the rim at which a pendulum hangs down, m.
+    fn hangs_at(&self, law: &Law) -> f64 {
+        0.12 * law.draw[0]
+    }
+
+    /// Error of the encoder at `x`, m.
+    fn encoder_error(&self, x: f64) -> f64 {
+        self.find(Hidden::Encoder).map_or(0.0, |law| {
+            let period = 2e-3 * 4f64.powf(law.draw[0]);
+            law.size * (TAU * (x / period + law.draw[1])).sin()
+        })
+    }
+
+    /// Largest force of the drive, N.
+    fn limit(&self) -> f64 {
+        self.size_of(Hidden::Saturation).map_or(f64::INFINITY, |cut| {
+            let (acceleration, speed) = FASTEST;
+            (1.0 - cut) * (self.mass * acceleration + self.viscous * speed + self.coulomb)
+        })
     }
 
     /// Deflection up to breakaway of an elastic contact, m, and its kind.
@@ -187,7 +216,7 @@ impl Table {
         let (mut speed, mut before) = (0.0, 0.0);
         let (mut time, mut force, mut position) = (Vec::new(), Vec::new(), Vec::new());
         for (k, target) in wanted.iter().enumerate() {
-            let counted = (plant.x / COUNT).round() * COUNT;
+            let counted = ((plant.x + self.encoder_error(plant.x)) / COUNT).round() * COUNT;
             let error = target - counted;
             speed += 0.4 * ((error - before) / SAMPLE_TIME - speed);
             before = error;
@@ -202,10 +231,18 @@ impl Table {
                 plant.step(command, t + step as f64 * h, h);
             }
         }
-        let channels =
-            vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+        let channels = if self.find(Hidden::Pendulum).is_some() {
+            let (force, position) = (scaled(&force, RADIUS), scaled(&position, 1.0 / RADIUS));
+            vec![Channel::new("force", "Nm", force), Channel::new("position", "rad", position)]
+        } else {
+            vec![Channel::new("force", "N", force), Channel::new("position", "m", position)]
+        };
         Ok(Recording::new("table", time, channels)?.with_hold(Hold::ZeroOrder))
     }
+}
+
+fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+    values.iter().map(|value| value * factor).collect()
 }
 
 /// Where the laws are asked.
@@ -268,6 +305,7 @@ impl<'a> Plant<'a> {
         let table = self.table;
         self.commands.push_back(command);
         let arrived = self.commands.pop_front().unwrap_or(command);
+        let arrived = arrived.clamp(-table.limit(), table.limit());
         let lag = table.size_of(Hidden::ActuatorLag).unwrap_or(0.0);
         self.force =
             if lag > 0.0 { arrived + (self.force - arrived) * (-h / lag).exp() } else { arrived };

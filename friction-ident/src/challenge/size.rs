@@ -76,7 +76,9 @@ fn contact(
 struct Knob {
     /// The shape parameter to turn; none for the amplitudes.
     shape: Option<&'static str>,
+    /// Factor that makes the effect small.
     low: f64,
+    /// Factor that makes it large.
     high: f64,
 }
 
@@ -86,6 +88,10 @@ impl Knob {
         let amplitude = about.parameters.iter().any(|p| p.role == Role::Amplitude);
         let first = about.parameters.iter().find(|p| p.role == Role::Shape);
         match first {
+            // The lower the limit of a drive, the larger its effect.
+            Some(shape) if about.name == "saturation" => {
+                Self { shape: Some(shape.name), low: 20.0, high: 1e-2 }
+            }
             Some(shape) if !amplitude => Self { shape: Some(shape.name), low: 1e-2, high: 20.0 },
             _ => Self { shape: None, low: 1e-3, high: 1e2 },
         }
@@ -113,7 +119,9 @@ fn added_force(base: &Model, full: &Model, run: &Run) -> f64 {
     let time = run.recording.time();
     let acceleration = derivative(time, &run.velocity);
     let motion = MeasuredMotion::new(time, &run.position, &run.velocity, &acceleration);
-    let Ok(motion) = motion.and_then(|motion| motion.with_drive_force(&run.command)) else {
+    let Ok(motion) =
+        motion.and_then(|motion| motion.with_cutoff(BANDWIDTH).with_drive_force(&run.command))
+    else {
         return 0.0;
     };
     let force = DVector::from_vec(force_along(full, &motion));

@@ -23,6 +23,9 @@ pub trait Drive: Sync + Send {
 
     /// Replaces `force`, one contiguous piece sampled at `time`, by the command that yields it.
     fn invert(&self, p: &[f64], time: &[f64], force: &mut [f64]);
+
+    /// Adds to `force` what never arrives of the `command` that was recorded, sample by sample.
+    fn withhold(&self, _p: &[f64], _command: &[f64], _force: &mut [f64]) {}
 }
 
 /// A step as a [`Drive`] sees it.

@@ -1,57 +1,89 @@
-//! The encoder: whole counts, and an error within each period of its grating.
+//! The encoder: an error within each period of its grating, or within each turn.
 
 use std::f64::consts::TAU;
 
-use super::{About, Effect, Parameter, Slot};
+use super::{About, Effect, Parameter, Parameters, Sensor, Shown, Slot};
 use crate::axis::Quantity;
 
-/// `q = step round((x + a sin(2 pi x/p) + b cos(2 pi x/p)) / step)`.
+/// `x + a sin(2 pi x/p) + b cos(2 pi x/p)` is shown.
+///
+/// Its resolution is a matter of the recording: see [`crate::closed_loop::Setup`].
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder;
 
 static ABOUT: About = About {
     name: "encoder",
-    title: "encoder: resolution and sub-division error",
-    equation: "x + a sin(2 pi x/p) + b cos(2 pi x/p), rounded to whole q",
+    title: "periodic error of the encoder (sub-division, eccentricity)",
+    equation: "x + a sin(2 pi x/p) + b cos(2 pi x/p) is shown",
     parameters: &[
-        Parameter::fixed("q", "resolution", Quantity::Length, (0.0, 1e-3), 1e-6),
-        Parameter::signed(
-            "a",
-            "sine amplitude of the sub-division error",
+        Parameter::signed("a", "sine amplitude", Quantity::Length, 1e-4, 1e-6),
+        Parameter::signed("b", "cosine amplitude", Quantity::Length, 1e-4, 1e-6),
+        Parameter::shape(
+            "p",
+            "period: of the grating, or way per turn",
             Quantity::Length,
-            1e-4,
-            0.0,
+            (1e-6, 0.05),
+            5e-3,
         ),
-        Parameter::signed(
-            "b",
-            "cosine amplitude of the sub-division error",
-            Quantity::Length,
-            1e-4,
-            0.0,
-        ),
-        Parameter::shape("p", "period of the grating", Quantity::Length, (1e-6, 1e-2), 2e-5),
     ],
     slots: &[Slot::Sensor],
-    shows: "a residual whose size does not depend on the motion; with sub-division error a line whose frequency is speed/p",
-    reference: "P. L. M. Heydemann, Applied Optics 20, 1981 (sub-division); IEEE Std 1057 (quantisation)",
+    shows: "a line whose frequency is speed/p and whose force grows with the square of the speed",
+    reference: "P. L. M. Heydemann, Applied Optics 20, 1981",
 };
+
+/// Order of the low-pass filter, forwards and backwards, behind [`passed`].
+const ORDER: i32 = 8;
+
+/// Share of a sine of `frequency` that passes a smoother with this cut-off, both Hz.
+fn passed(frequency: f64, cutoff: f64) -> f64 {
+    1.0 / (1.0 + (frequency / cutoff).powi(ORDER))
+}
+
+/// Accelerations that unit amplitudes `a` and `b` feign while an axis moves with `velocity` and
+/// `acceleration`; `wave` is the sine and cosine of `2 pi x/p`.
+pub fn feigned(
+    (sin, cos): (f64, f64),
+    period: f64,
+    velocity: f64,
+    acceleration: f64,
+    cutoff: f64,
+) -> (f64, f64) {
+    let w = TAU / period;
+    let part = passed(velocity.abs() / period, cutoff);
+    let (turn, bend) = (part * w * acceleration, part * (w * velocity).powi(2));
+    (turn * cos - bend * sin, -turn * sin - bend * cos)
+}
 
 impl Effect for Encoder {
     fn about(&self) -> &'static About {
         &ABOUT
     }
 
-    fn show(&self, p: &[f64], position: &mut [f64]) {
-        let [step, a, b, period] = [p[0], p[1], p[2], p[3]];
-        for position in position {
-            let (sin, cos) = (TAU * *position / period).sin_cos();
-            let shown = *position + a * sin + b * cos;
-            *position = if step > 0.0 { (shown / step).round() * step } else { shown };
+    fn sensor(&self) -> Option<&dyn Sensor> {
+        Some(self)
+    }
+}
+
+impl Sensor for Encoder {
+    fn show(&self, p: Parameters<'_>, position: &mut [f64]) {
+        let [a, b, period] = [p.get(0), p.get(1), p.get(2)];
+        for (i, position) in position.iter_mut().enumerate() {
+            let (sin, cos) = (TAU * (*position / period[i])).sin_cos();
+            *position += a[i] * sin + b[i] * cos;
         }
     }
 
-    fn shows_in_force(&self) -> bool {
-        false
+    fn correct(&self, p: &[f64], shown: &mut Shown<'_>) {
+        let [a, b, period] = [p[0], p[1], p[2]];
+        let w = TAU / period;
+        for i in 0..shown.position.len() {
+            let (v, wave) = (shown.velocity[i], (w * shown.position[i]).sin_cos());
+            let (sine, cosine) = feigned(wave, period, v, shown.acceleration[i], shown.cutoff);
+            let part = passed(v.abs() / period, shown.cutoff);
+            shown.position[i] -= part * (a * wave.0 + b * wave.1);
+            shown.velocity[i] -= part * w * v * (a * wave.1 - b * wave.0);
+            shown.acceleration[i] -= a * sine + b * cosine;
+        }
     }
 }
 
@@ -59,21 +91,51 @@ impl Effect for Encoder {
 mod tests {
     use super::*;
 
-    #[test]
-    fn positions_are_whole_counts() {
-        let mut position = [0.4e-6, 0.6e-6, -1.6e-6];
-        Encoder.show(&[1e-6, 0.0, 0.0, 2e-5], &mut position);
-        assert_eq!(position, [0.0, 1e-6, -2e-6]);
+    fn shown(position: f64) -> f64 {
+        let mut shown = [position];
+        Encoder.show(Parameters::new(&[2e-7, 1e-7, 2e-5], 1), &mut shown);
+        shown[0]
     }
 
     #[test]
-    fn the_sub_division_error_repeats_with_the_grating() {
-        let at = |x: f64| {
-            let mut position = [x];
-            Encoder.show(&[0.0, 2e-7, 1e-7, 2e-5], &mut position);
-            position[0] - x
+    fn the_error_repeats_with_the_period() {
+        let error = |x: f64| shown(x) - x;
+        assert!((error(5e-6) - 2e-7).abs() < 1e-15 && (error(0.0) - 1e-7).abs() < 1e-15);
+        assert!((error(3.3e-6) - error(2.33e-5)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_shown_motion_is_corrected_to_first_order() {
+        // x = 1 mm sin(t) is shown with an error of 1e-4 of the period.
+        let p = [3e-8, -1e-8, 3e-4];
+        let at = |t: f64| {
+            let mut x = [1e-3 * t.sin()];
+            Encoder.show(Parameters::new(&p, 1), &mut x);
+            x[0]
         };
-        assert!((at(5e-6) - 2e-7).abs() < 1e-15 && (at(0.0) - 1e-7).abs() < 1e-15);
-        assert!((at(3.3e-6) - at(2.33e-5)).abs() < 1e-15);
+        for k in 0..40 {
+            let (t, h) = (0.1 * f64::from(k), 1e-4);
+            let (before, now, after) = (at(t - h), at(t), at(t + h));
+            let (mut x, mut v) = ([now], [(after - before) / (2.0 * h)]);
+            let mut a = [(after - 2.0 * now + before) / (h * h)];
+            let (false_x, false_a) = (now - 1e-3 * t.sin(), a[0] + 1e-3 * t.sin());
+            let (position, velocity, acceleration) = (&mut x[..], &mut v[..], &mut a[..]);
+            let cutoff = f64::INFINITY;
+            Encoder.correct(&p, &mut Shown { position, velocity, acceleration, cutoff });
+            assert!((x[0] - 1e-3 * t.sin()).abs() < 2e-3 * false_x.abs() + 1e-12);
+            assert!((v[0] - 1e-3 * t.cos()).abs() < 2e-6 * 1e-3 + 1e-9);
+            assert!((a[0] + 1e-3 * t.sin()).abs() < 3e-3 * false_a.abs() + 1e-7, "{k}: {a:?}");
+        }
+    }
+
+    #[test]
+    fn what_the_smoother_takes_out_is_not_corrected() {
+        let (mut x, mut v, mut a) = ([0.0], [0.1], [0.0]);
+        // 0.1 m/s over 1 mm is 100 Hz, five times the cut-off.
+        Encoder.correct(
+            &[0.0, 1e-6, 1e-3],
+            &mut Shown { position: &mut x, velocity: &mut v, acceleration: &mut a, cutoff: 20.0 },
+        );
+        assert!(x[0].abs() < 1e-11 && a[0].abs() < 1e-5 * 0.4, "{x:?} {a:?}");
     }
 }

@@ -11,6 +11,7 @@ mod lanes;
 mod library;
 mod memory;
 mod past;
+mod sensor;
 
 pub mod actuator_lag;
 pub mod asymmetry;
@@ -49,6 +50,7 @@ pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
 pub use memory::{Memory, Recalled, Taken};
 pub use past::Past;
+pub use sensor::{Sensor, Shown};
 
 /// A physical effect. Every hook adds to its output, lane by lane; all slices are equally long.
 ///
@@ -90,8 +92,10 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// Slot [`Slot::Sensor`]: replaces true positions of one plant by what the sensor shows.
-    fn show(&self, _p: &[f64], _position: &mut [f64]) {}
+    /// Slot [`Slot::Sensor`].
+    fn sensor(&self) -> Option<&dyn Sensor> {
+        None
+    }
 
     /// For effects with a hump of the level at rest: writes the share of it that is left at
     /// `level_velocity` and returns true.

@@ -54,62 +54,10 @@ impl Effect for Ripple {
     }
 }
 
-/// Forces per unit of the four amplitudes at `positions`, for evenly spaced spatial frequencies (1/m)
-/// from `first` in steps of `step`: what a search over periods needs. One rotation per frequency takes
-/// the place of a sine and a cosine; over some hundred steps it is exact to 1e-12.
-#[derive(Clone, Debug)]
-pub struct Sweep {
-    wave: Vec<(f64, f64)>,
-    turn: Vec<(f64, f64)>,
-}
-
-impl Sweep {
-    /// Starts a sweep.
-    pub fn new(positions: &[f64], first: f64, step: f64) -> Self {
-        let waves = |frequency: f64| -> Vec<(f64, f64)> {
-            positions.iter().map(|x| (TAU * (x * frequency)).sin_cos()).collect()
-        };
-        Self { wave: waves(first), turn: waves(step) }
-    }
-
-    /// The columns of `a_1, b_1, a_2, b_2` at the present frequency; then on to the next one.
-    pub fn advance(&mut self) -> [Vec<f64>; 4] {
-        let column = |of: fn((f64, f64)) -> f64| self.wave.iter().map(|w| of(*w)).collect();
-        let columns = [
-            column(|(sin, _)| sin),
-            column(|(_, cos)| cos),
-            column(|(sin, cos)| 2.0 * sin * cos),
-            column(|(sin, _)| 1.0 - 2.0 * sin * sin),
-        ];
-        for ((sin, cos), (turn_sin, turn_cos)) in self.wave.iter_mut().zip(&self.turn) {
-            (*sin, *cos) = (*sin * turn_cos + *cos * turn_sin, *cos * turn_cos - *sin * turn_sin);
-        }
-        columns
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::testing::{Point, smooth};
     use super::*;
-
-    #[test]
-    fn a_sweep_gives_the_law_for_every_frequency() {
-        let positions = [0.0, 0.013, -0.4, 0.11];
-        let mut sweep = Sweep::new(&positions, 12.0, 3.3);
-        for k in 0..300 {
-            let columns = sweep.advance();
-            let period = 1.0 / (12.0 + 3.3 * f64::from(k));
-            for (i, x) in positions.iter().enumerate() {
-                for (amplitude, column) in columns.iter().enumerate() {
-                    let mut p = [0.0, 0.0, 0.0, 0.0, period];
-                    p[amplitude] = 1.0;
-                    let (force, _) = smooth(&Ripple, &p, Point::at(*x, 0.1));
-                    assert!((column[i] - force).abs() < 1e-10, "{k} {i} {amplitude}");
-                }
-            }
-        }
-    }
 
     #[test]
     fn both_harmonics_have_their_period() {

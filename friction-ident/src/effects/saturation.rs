@@ -26,11 +26,6 @@ impl Effect for Saturation {
     fn drive(&self) -> Option<&dyn Drive> {
         Some(self)
     }
-
-    fn shows_in_force(&self) -> bool {
-        // Which command beyond the limit was given does not follow from the motion.
-        false
-    }
 }
 
 impl Drive for Saturation {
@@ -46,7 +41,15 @@ impl Drive for Saturation {
         }
     }
 
-    fn invert(&self, _p: &[f64], _time: &[f64], _force: &mut [f64]) {}
+    fn invert(&self, _p: &[f64], _time: &[f64], _force: &mut [f64]) {
+        // Which command beyond the limit was given does not follow from the motion.
+    }
+
+    fn withhold(&self, p: &[f64], command: &[f64], force: &mut [f64]) {
+        for (force, command) in force.iter_mut().zip(command) {
+            *force += command - limited(*command, p[0]);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -60,5 +63,12 @@ mod tests {
         let step = Advance { duration: &[1e-3; 3], end: &[0.0; 3], past: &past };
         Saturation.advance(Parameters::new(&[30.0; 3], 3), &step, &mut [], &mut force);
         assert_eq!(force, [-30.0, 20.0, 30.0]);
+    }
+
+    #[test]
+    fn what_is_commanded_beyond_the_limit_is_withheld() {
+        let mut required = [-30.0, 19.0, 30.0];
+        Saturation.withhold(&[30.0], &[-50.0, 20.0, 33.0], &mut required);
+        assert_eq!(required, [-50.0, 19.0, 33.0]);
     }
 }

@@ -21,6 +21,7 @@ use crate::closed_loop::{Controller, Pd, Sample, Setup, closed_loop};
 use crate::driven::{MeasuredMotion, force_along};
 use crate::model::Model;
 use crate::reference::Reference;
+use crate::signal::quantile;
 
 /// Share of the stroke that is kept free at either end.
 const MARGIN: f64 = 0.05;
@@ -312,11 +313,4 @@ impl Separation {
 
 fn starts(family: &FrictionFamily, term: usize) -> Vec<f64> {
     family.terms[term].parameters.iter().map(|parameter| parameter.start).collect()
-}
-
-/// A quantile of the absolute values.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    let index = ((sizes.len() as f64 * share) as usize).min(sizes.len().saturating_sub(1));
-    *sizes.select_nth_unstable_by(index, f64::total_cmp).1
 }

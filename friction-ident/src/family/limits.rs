@@ -6,6 +6,7 @@ use missing_physics::{Parameter, Role, Term};
 use super::preparation::Prepared;
 use crate::axis::{Axis, Quantity};
 use crate::effects::{self, About};
+use crate::signal::quantile;
 
 /// Most trial periods of a ripple: down to 1/280 of the stroke. Finer ones are not looked for.
 const MOST_PERIODS: usize = 700;
@@ -13,11 +14,16 @@ const MOST_PERIODS: usize = 700;
 /// wide, one of the second harmonic half as much.
 const LINE_WIDTH: f64 = 0.4;
 
+/// Largest share of the time in which a drive is at its limit.
+const SATURATED: f64 = 0.2;
+
 /// Sizes of the recording.
 pub struct Limits {
     axis: Axis,
     interval: f64,
     force: Size,
+    /// Size of the force that is exceeded in [`SATURATED`] of the time.
+    usual_force: f64,
     speed: Size,
     acceleration: Size,
     stroke: f64,
@@ -48,6 +54,7 @@ impl Limits {
             axis,
             interval: prepared.interval,
             force: Size::of(&prepared.force),
+            usual_force: quantile(&prepared.force, 1.0 - SATURATED),
             speed: Size::of(&prepared.velocity),
             acceleration: Size::of(&prepared.acceleration),
             stroke: (stroke.1 - stroke.0).max(f64::MIN_POSITIVE),
@@ -85,16 +92,18 @@ impl Limits {
             name: about.name.into(),
             title: about.title.into(),
             equation: about.equation.into(),
-            parameters: fitted
-                .map(|parameter| self.parameter(parameter, is_amplitude(about, parameter)))
-                .collect(),
+            parameters: fitted.map(|parameter| self.parameter(parameter, about)).collect(),
             always: false,
         }
     }
 
-    fn parameter(&self, parameter: &effects::Parameter, amplitude: bool) -> Parameter {
-        let (lower, upper, start) =
-            if amplitude { self.amplitude(parameter) } else { self.shape(parameter) };
+    fn parameter(&self, parameter: &effects::Parameter, about: &About) -> Parameter {
+        let amplitude = is_amplitude(about, parameter);
+        let (lower, upper, start) = match parameter.quantity {
+            _ if amplitude => self.amplitude(parameter),
+            Quantity::Force if about.acts_on(effects::Slot::Drive) => self.limit_of_drive(),
+            _ => self.shape(parameter),
+        };
         Parameter {
             name: parameter.name.into(),
             unit: self.axis.unit(parameter.quantity).into(),
@@ -129,6 +138,13 @@ impl Limits {
         let upper = 2.0 * self.force.most / per.rms;
         let lower = if parameter.low < 0.0 { -upper } else { 0.0 };
         (lower, upper, 0.1 * self.force.rms / per.rms)
+    }
+
+    /// A limit of the drive that was reached, but not most of the time.
+    fn limit_of_drive(&self) -> (f64, f64, f64) {
+        let upper = self.force.most;
+        let lower = self.usual_force.clamp(1e-3 * upper, 0.99 * upper);
+        (lower, upper, (lower * upper).sqrt())
     }
 
     /// A shape within what the motion covers; never empty.
@@ -175,20 +191,20 @@ fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
 const RESONANCES: usize = 40;
 const DAMPING: [f64; 3] = [0.03, 0.1, 0.4];
 
-/// Trial periods of a ripple, the shortest first: evenly in spatial frequency, a little less than a
-/// line width apart, up to the frequency that passes the comparison's bandwidth in slow motion.
-pub fn periods(prepared: &Prepared, stroke: (f64, f64)) -> Vec<f64> {
+/// Trial periods along the stroke within the limits of `term`, the shortest first: evenly in spatial
+/// frequency, a little less than a line width apart, up to the frequency that passes the comparison's
+/// bandwidth in slow motion.
+pub fn periods(prepared: &Prepared, stroke: (f64, f64), term: &Term) -> Vec<Vec<f64>> {
     let length = stroke.1 - stroke.0;
-    let mut speeds: Vec<f64> = prepared.grid.iter().map(|&k| prepared.velocity[k].abs()).collect();
-    let tenth = speeds.len() / 10;
-    let slow = *speeds.select_nth_unstable_by(tenth, f64::total_cmp).1;
-    let lowest = 1.5 / length;
+    let slow = quantile(&prepared.sample(&prepared.velocity), 0.1);
+    let longest = term.parameters.iter().find(|parameter| parameter.role == Role::Shape);
+    let lowest = (1.5 / length).max(longest.map_or(0.0, |period| 1.0 / period.upper));
     let passing = prepared.bandwidth / slow.max(prepared.rest_speed);
     let highest = passing.min(lowest + LINE_WIDTH * MOST_PERIODS as f64 / length);
     let count = ((highest - lowest) * length / LINE_WIDTH).ceil().max(1.0) as usize;
     (0..=count)
         .rev()
-        .map(|k| 1.0 / (lowest + (highest - lowest).max(0.0) * k as f64 / count as f64))
+        .map(|k| vec![1.0 / (lowest + (highest - lowest).max(0.0) * k as f64 / count as f64)])
         .collect()
 }
 

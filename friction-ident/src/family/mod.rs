@@ -12,6 +12,7 @@ mod generic;
 mod limits;
 mod plots;
 mod preparation;
+mod sweep;
 mod views;
 mod words;
 
@@ -32,7 +33,6 @@ pub use words::engineering;
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
-use crate::effects::ripple::Sweep;
 use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
 
@@ -43,8 +43,6 @@ const INVISIBLE: [&str; 1] = ["motor-gain"];
 const ANGLES: i32 = 32;
 /// What the lighter smoother does to the motion, as a multiple of what the heavier one does beyond it.
 const DOUBT: f64 = 1.0 / (preparation::SMOOTHER / preparation::HEAVIER - 1.0);
-/// Periods per sweep of a ripple's trials.
-const SWEEP: usize = 64;
 
 /// What can be chosen.
 #[derive(Clone, Default)]
@@ -216,7 +214,7 @@ impl FrictionFamily {
             .and_then(|motion| motion.with_segments(&p.segments))
             .and_then(|motion| motion.with_drive_force(&p.force));
         match motion {
-            Ok(motion) => run(&motion),
+            Ok(motion) => run(&motion.with_cutoff(p.cutoff)),
             Err(_) => unreachable!("channels of a prepared recording have one length"),
         }
     }
@@ -248,27 +246,6 @@ impl FrictionFamily {
                 difference[near].iter().fold(0.0, |most: f64, value| most.max(value.abs()))
             })
             .collect()
-    }
-
-    /// Columns of ripples whose periods are evenly spaced in spatial frequency, as
-    /// [`limits::periods`] makes them.
-    fn ripples(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
-        let frequency = |k: usize| 1.0 / periods[k][0];
-        let step = if periods.len() > 1 { frequency(1) - frequency(0) } else { 0.0 };
-        let chunks: Vec<Vec<Vec<Vec<f64>>>> = (0..periods.len())
-            .step_by(SWEEP)
-            .collect::<Vec<_>>()
-            .into_par_iter()
-            .map(|first| {
-                let mut sweep = Sweep::new(&self.prepared.position, frequency(first), step);
-                let compare = |columns: [Vec<f64>; 4]| -> Vec<Vec<f64>> {
-                    columns.iter().map(|column| self.prepared.compare(column)).collect()
-                };
-                let count = SWEEP.min(periods.len() - first);
-                (0..count).map(|_| compare(sweep.advance())).collect()
-            })
-            .collect();
-        chunks.into_iter().flatten().collect()
     }
 
     fn is_simple(&self, term: usize) -> bool {
@@ -317,11 +294,8 @@ impl ModelFamily for FrictionFamily {
                 .map(|k| vec![std::f64::consts::PI * f64::from(k) / f64::from(ANGLES)])
                 .collect();
         }
-        if self.terms[term].name == "ripple" {
-            return limits::periods(&self.prepared, self.stroke)
-                .into_iter()
-                .map(|period| vec![period])
-                .collect();
+        if ["ripple", "encoder"].contains(&self.terms[term].name.as_str()) {
+            return limits::periods(&self.prepared, self.stroke, &self.terms[term]);
         }
         if self.terms[term].name == "flexible-coupling" {
             return limits::resonances(&self.terms[term]);
@@ -336,6 +310,9 @@ impl ModelFamily for FrictionFamily {
         term: usize,
         shape: &[f64],
     ) -> Vec<Vec<f64>> {
+        if self.terms[term].name == "encoder" {
+            return self.encoders(model, &[shape.to_vec()]).swap_remove(0);
+        }
         let simple = model.terms.iter().skip(1).chain([&term]).all(|&term| self.is_simple(term));
         let about = &self.terms[term];
         let values = missing_physics::shapes::assemble(about, shape, &[]);
@@ -363,17 +340,23 @@ impl ModelFamily for FrictionFamily {
         term: usize,
         shapes: &[Vec<f64>],
     ) -> Vec<Vec<Vec<f64>>> {
-        if self.terms[term].name == "ripple" {
-            // A force that depends on position alone is the same with any contact; what a drive does
-            // to it is a few degrees of phase, which the refinement after the screening mends.
-            return self.ripples(shapes);
+        match self.terms[term].name.as_str() {
+            "ripple" => self.ripples(shapes),
+            "encoder" => self.encoders(model, shapes),
+            _ => shapes
+                .par_iter()
+                .map(|shape| self.columns(model, prediction, term, shape))
+                .collect(),
         }
-        shapes.par_iter().map(|shape| self.columns(model, prediction, term, shape)).collect()
     }
 
     fn form_of(&self, term: usize) -> Option<usize> {
         let stem = self.terms[term].name.split_once(':')?.0;
         self.terms.iter().position(|main| main.name == stem)
+    }
+
+    fn is_of_sensor(&self, term: usize) -> bool {
+        term > 0 && self.effects[term - 1].sensor().is_some()
     }
 
     fn joins(&self, model: &Fitted, term: usize) -> bool {

@@ -82,6 +82,8 @@ pub struct Prepared {
     pub stride: usize,
     /// Bandwidth of the comparison, Hz.
     pub bandwidth: f64,
+    /// Cut-off of the position's smoother, Hz.
+    pub cutoff: f64,
     /// Standard deviation of what the smoother took out of the position: its noise, m or rad.
     pub position_noise: f64,
     /// Speed below which the axis is taken to rest, m/s or rad/s.
@@ -149,6 +151,7 @@ impl Prepared {
             grid: Vec::new(),
             stride: 1,
             bandwidth: relative / interval,
+            cutoff: smoother / interval,
             position_noise,
             rest_speed,
             heavier: (heavy.velocity, heavy.acceleration),

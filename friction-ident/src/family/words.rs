@@ -46,7 +46,7 @@ pub fn describe(term: &Term, values: &[f64]) -> String {
 }
 
 /// Pairs (or more) of effects that look alike in ordinary motion, and what tells them apart.
-const APART: [(&[&str], &str); 9] = [
+const APART: [(&[&str], &str); 10] = [
     (
         &["offset", "asymmetry"],
         "break away from rest in both directions: an offset shifts both breakaway forces the same way, asymmetry makes them differ in size; add constant speeds over the whole range",
@@ -78,6 +78,10 @@ const APART: [(&[&str], &str); 9] = [
     (
         &["spring", "position-friction", "ripple", "gravity-pendulum"],
         "cover the whole stroke in both directions at two constant speeds",
+    ),
+    (
+        &["ripple", "encoder"],
+        "cover the same stroke at constant speeds a factor of three apart: a ripple keeps its force, what an error of the encoder feigns grows with the square of the speed",
     ),
     (
         &["backlash", "presliding", "flexible-coupling"],

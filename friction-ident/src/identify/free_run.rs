@@ -169,9 +169,10 @@ impl<'a> FreeRun<'a> {
         };
         let mut held = vec![0.0; controllers.len()];
         for k in 0..self.longest {
+            let shown = plants.shown();
             for (s, segment) in segments.iter().enumerate().filter(|(_, s)| k < s.len()) {
                 let measured = self.data.position[segment.start + k];
-                let simulated = &plants.position()[s * count..(s + 1) * count];
+                let simulated = &shown[s * count..(s + 1) * count];
                 errors.iter_mut().zip(simulated).for_each(|(e, x)| *e = measured - x);
                 each(segment.start + k, &errors);
             }
@@ -179,7 +180,7 @@ impl<'a> FreeRun<'a> {
                 for (s, segment) in segments.iter().enumerate().filter(|(_, s)| k < s.len()) {
                     let sample = segment.start + k;
                     for i in s * count..(s + 1) * count {
-                        let (time, x) = (self.data.time[sample], plants.position()[i]);
+                        let (time, x) = (self.data.time[sample], shown[i]);
                         held[i] = controllers[i].command(&control.sample(sample, time, x));
                     }
                 }

@@ -1,5 +1,7 @@
 //! Plants of the same effects that advance together, one per lane.
 
+use std::borrow::Cow;
+
 use super::SimulationError;
 use super::kernels::keep_positive;
 use super::scratch::Scratch;
@@ -49,6 +51,7 @@ pub struct Plants {
     pub(super) drives: Vec<usize>,
     pub(super) memories: Vec<usize>,
     pub(super) attached: Vec<usize>,
+    pub(super) sensors: Vec<usize>,
     pub(super) contact: Option<usize>,
     pub(super) iterations: usize,
     pub(super) mass: Vec<f64>,
@@ -115,6 +118,7 @@ impl Plants {
             drives: on(Slot::Drive),
             memories: on(Slot::Memory),
             attached: on(Slot::Attached),
+            sensors: on(Slot::Sensor),
             contact: on(Slot::Contact).first().copied(),
             iterations: elements.map(Element::iterations).max().unwrap_or(0),
             effects,
@@ -175,6 +179,17 @@ impl Plants {
     /// Positions, m or rad.
     pub fn position(&self) -> &[f64] {
         &self.position
+    }
+
+    /// Positions as the sensor shows them, m or rad.
+    pub fn shown(&self) -> Cow<'_, [f64]> {
+        let mut shown = Cow::Borrowed(&self.position[..]);
+        for active in self.sensors.iter().map(|k| &self.effects[*k]) {
+            if let Some(sensor) = active.effect.sensor() {
+                sensor.show(Parameters::new(&active.values, self.lanes), shown.to_mut());
+            }
+        }
+        shown
     }
 
     /// Velocities, m/s or rad/s.

@@ -76,7 +76,7 @@ impl<'a> Input<'a> {
 /// A simulated motion, one value per time of the input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
-    /// Position, m or rad.
+    /// Position as the sensor shows it, m or rad.
     pub position: Vec<f64>,
     /// Velocity, m/s or rad/s.
     pub velocity: Vec<f64>,
@@ -120,7 +120,7 @@ pub fn simulate(
 
 impl Trajectory {
     fn push(&mut self, batch: &Plants, force: f64) {
-        self.position.push(batch.position()[0]);
+        self.position.push(batch.shown()[0]);
         self.velocity.push(batch.velocity()[0]);
         self.drive_force.push(force);
     }

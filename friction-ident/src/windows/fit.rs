@@ -106,7 +106,7 @@ impl<'a> Fitter<'a> {
             }
         }
         self.track.clear();
-        self.track.extend_from_slice(self.plants.position());
+        self.track.extend_from_slice(&self.plants.shown());
         let (mut duration, mut command) = (vec![0.0; lanes], vec![0.0; lanes]);
         for k in 0..longest.saturating_sub(1) {
             for step in 0..data.steps {
@@ -117,7 +117,7 @@ impl<'a> Fitter<'a> {
                 }
                 self.plants.step(&duration, &command);
             }
-            self.track.extend_from_slice(self.plants.position());
+            self.track.extend_from_slice(&self.plants.shown());
         }
     }
 

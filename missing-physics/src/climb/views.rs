@@ -30,15 +30,18 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         })
     }
 
-    /// Whether a fit is better in every view in which the present model leaves no more than noise may.
+    /// Whether a fit is better in every view in which the present model leaves no more than noise may; with
+    /// an effect of the sensor, in every view: there it shows as it is.
     pub(super) fn stands_out(&self, fit: &Fit) -> bool {
-        let noisy = self.within_noise();
-        let after = if noisy.is_empty() {
+        let new = fit.model.terms.iter().filter(|term| !self.fit.model.terms.contains(term));
+        let of_sensor = new.copied().any(|term| self.family.is_of_sensor(term));
+        let seen = if of_sensor { self.ladder.views() } else { self.within_noise() };
+        let after = if seen.is_empty() {
             BTreeMap::new()
         } else {
             self.family.views(&fit.model, &self.split)
         };
-        noisy.iter().all(|(name, before)| {
+        seen.iter().all(|(name, before)| {
             after.get(name).is_none_or(|error| {
                 CONTRADICTION * error.fit < before.fit
                     && CONTRADICTION * error.validation < before.validation
