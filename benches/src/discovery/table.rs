@@ -162,7 +162,8 @@ impl Table {
                 Hidden::QuadraticDrag => size * v * v.abs() / 0.04,
                 Hidden::ShearThinning => size * (v / (5e-3 * 5f64.powf(draw[0]))).tanh(),
                 Hidden::Spring => size * (x - 0.06) / 0.06,
-                Hidden::Pendulum => size * ((x - self.hangs_at(law)) / RADIUS).sin(),
+                // It hangs down somewhere within the way of 2.4 rad.
+                Hidden::Pendulum => size * (x / RADIUS - 2.4 * draw[0]).sin(),
                 Hidden::LoadFriction => STRONG_SPRING * (x - 0.06),
                 Hidden::TimePeriodic => size * (TAU * (t / (0.3 + 0.9 * draw[0]) + draw[1])).sin(),
                 Hidden::Dent => {
@@ -173,11 +174,6 @@ impl Table {
             }
         };
         self.viscous * v + self.offset + self.hidden.iter().map(extra).sum::<f64>()
-    }
-
-    /// Place on the rim at which a pendulum hangs down, m.
-    fn hangs_at(&self, law: &Law) -> f64 {
-        0.12 * law.draw[0]
     }
 
     /// Error of the encoder at `x`, m.
