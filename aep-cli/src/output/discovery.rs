@@ -12,16 +12,14 @@ use crate::args::library;
 
 use super::bars::bar;
 use super::style::{dim, paint};
-use super::table::{self, Align, Table};
+use super::table::{Align, Table};
 
 /// From this p-value on a dependence may well be chance.
 const CHANCE: f64 = 0.05;
-/// Columns of a terminal from which the errors on fitted data have room, too.
-const WIDE: u16 = 100;
 /// How the notes of most coordinates begin.
 const MEAN_ERROR: &str = "largest mean error";
 /// Width of the bars.
-const BAR: usize = 12;
+const BAR: usize = 10;
 
 /// The verdict and its summary.
 pub fn verdict(discovery: &Discovery) -> String {
@@ -109,27 +107,31 @@ pub fn ladder(discovery: &Discovery, first: &str) -> String {
             format!("{} {kind}", name.quantity)
         })
         .collect();
-    let fitted = table::width() >= WIDE;
-    let mut columns = vec![("rung", Align::Left), ("", Align::Bar)];
-    for heading in &headings {
-        columns.push((heading, Align::Right));
-        if fitted {
-            columns.push(("fitted", Align::Right));
-        }
-    }
     let tested = discovery.ladder.iter().any(|rung| rung.p_value.is_some());
-    if tested {
-        columns.push(("p-value", Align::Right));
-    }
-    let mut table = Table::new(&columns);
-    for rung in &discovery.ladder {
-        let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
-        // Effects that were added together stand below each other: the table is wide as it is.
-        let name = name.replace(" + ", "\n+ ");
-        let p_value = rung.p_value.map_or_else(|| "-".to_owned(), words::p_value);
-        let cells = ladder_cells(rung, &names, largest, fitted);
-        table.row(std::iter::once(name).chain(cells).chain(tested.then_some(p_value)));
-    }
+    let of = |fitted: bool| {
+        let mut columns = vec![("rung", Align::Left), ("", Align::Bar)];
+        for heading in &headings {
+            columns.push((heading, Align::Right));
+            if fitted {
+                columns.push(("fitted", Align::Right));
+            }
+        }
+        if tested {
+            columns.push(("p-value", Align::Right));
+        }
+        let mut table = Table::new(&columns);
+        for rung in &discovery.ladder {
+            let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
+            // Effects that were added together stand below each other: the table is wide as it is.
+            let name = name.replace(" + ", "\n+ ");
+            let p_value = rung.p_value.map_or_else(|| "-".to_owned(), words::p_value);
+            let cells = ladder_cells(rung, &names, largest, fitted);
+            table.row(std::iter::once(name).chain(cells).chain(tested.then_some(p_value)));
+        }
+        table
+    };
+    // On a narrow terminal without the errors on fitted data.
+    let table = Some(of(true)).filter(Table::fits).unwrap_or_else(|| of(false));
     let mut text = table.text();
     if let Some(floor) = words::floor(discovery, main) {
         let _ = writeln!(

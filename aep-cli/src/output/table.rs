@@ -28,11 +28,6 @@ const STYLE: TableStyle =
 /// Width of a table where there is no terminal to ask.
 const WIDTH: u16 = 110;
 
-/// Columns of the terminal.
-pub fn width() -> u16 {
-    comfy_table::Table::new().width().unwrap_or(WIDTH)
-}
-
 impl Table {
     /// A table with these headings.
     pub fn new(headings: &[(&str, Align)]) -> Self {
@@ -57,6 +52,13 @@ impl Table {
             if *align == Align::Bar { cell.fg(Color::Blue) } else { cell }
         });
         self.table.add_row(cells.collect::<Vec<Cell>>());
+    }
+
+    /// Whether no cell has to wrap.
+    pub fn fits(&self) -> bool {
+        // A blank on either side of a cell, and one before it.
+        let widths = self.table.column_max_content_widths();
+        widths.iter().map(|width| width + 3).sum::<u16>() <= self.table.width().unwrap_or(WIDTH)
     }
 
     /// The table as text, one line at the end.
