@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!(
         "\n{:30} {:>13} {:>14} {:>12}",
-        "", "RMS error, um", "peak error, um", "stick time, s"
+        "", "RMS error, µm", "peak error, µm", "stick time, s"
     );
     for (name, trial) in &trials {
         let measures = &trial.measures;
@@ -68,8 +68,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let error = |k: usize| trials[k].1.measures.rms_error;
     println!(
-        "\nThe hidden effect leaves {:.1} um of error behind the base model's compensator; with what was\n\
-         found the error is {:.1} um, {:.1} times less.",
+        "\nThe hidden effect leaves {:.1} µm of error behind the base model's compensator; with what was\n\
+         found the error is {:.1} µm, {:.1} times less.",
         1e6 * error(1),
         1e6 * error(2),
         error(1) / error(2)
@@ -147,7 +147,7 @@ fn draw(
         .x_label_area_size(42)
         .y_label_area_size(64)
         .build_cartesian_2d(0.0..end, -1.3 * most..1.3 * most)?;
-    chart.configure_mesh().x_desc("time, s").y_desc("tracking error, um").draw()?;
+    chart.configure_mesh().x_desc("time, s").y_desc("tracking error, µm").draw()?;
     let colours = [RGBColor(150, 150, 150), RGBColor(214, 39, 40), RGBColor(44, 160, 44)];
     for ((name, trial), colour) in trials.iter().zip(colours) {
         let points = (0..samples).map(|k| (k as f64 * SAMPLE_TIME, error(trial, k)));

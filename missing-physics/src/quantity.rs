@@ -10,6 +10,7 @@
 /// assert_eq!(quantity(0.0011, "m/s"), "1.10 mm/s");
 /// assert_eq!(quantity(203.5, "N s/m"), "204 N s/m");
 /// assert_eq!(quantity(5e-8, "m"), "50.0 nm");
+/// assert_eq!(quantity(1.25e7, "N/m"), "12.5 MN/m");
 /// ```
 pub fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() || unit == "1" {
@@ -42,7 +43,7 @@ pub fn percent(share: f64) -> String {
 }
 
 fn prefix(value: f64, unit: &str) -> (f64, &'static str) {
-    const SIMPLE: &[&str] = &["m", "s", "N", "Nm", "rad", "m/s", "rad/s", "m/s²", "rad/s²"];
+    const SIMPLE: &[&str] = &["m", "s", "N", "Nm", "N/m", "rad", "m/s", "rad/s", "m/s²", "rad/s²"];
     let size = value.abs();
     if size == 0.0 || !SIMPLE.contains(&unit) {
         return (1.0, "");
@@ -52,6 +53,7 @@ fn prefix(value: f64, unit: &str) -> (f64, &'static str) {
         _ if size < 0.999_5e-3 => (1e6, "µ"),
         // Forces are read in newtons, seconds in seconds: 0.29 N, not 290 mN.
         _ if size < 0.1 || (size < 0.999_5 && unit.starts_with('m')) => (1e3, "m"),
+        _ if size >= 1e7 && unit.starts_with('N') => (1e-6, "M"),
         _ if size >= 1e4 && unit.starts_with('N') => (1e-3, "k"),
         _ => (1.0, ""),
     }

@@ -282,7 +282,7 @@ fn csv(case: &Case, pd: &Trial, with: &Trial) -> String {
 /// Tracking errors over time: in a plot of positions they would hide behind the line's width.
 fn plot(case: &Case, pd: &Trial, with: &Trial) -> Result<String, Failure> {
     let (scale, unit) = match case.model.axis() {
-        Axis::Linear => (1e6, "um"),
+        Axis::Linear => (1e6, "µm"),
         Axis::Rotary => (1e3, "mrad"),
     };
     let curve = |label: &str, trial: &Trial| Curve {

@@ -99,7 +99,7 @@ fn errors(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
     };
     let curves = [curve("PD", &shown.pd), curve("PD + compensation", &shown.compensated)];
     let axes =
-        Axes { title: figure.title, x: "time, s", y: "tracking error, um", logarithmic: false };
+        Axes { title: figure.title, x: "time, s", y: "tracking error, µm", logarithmic: false };
     curve_plot::svg(axes, &curves)
 }
 

@@ -66,7 +66,7 @@ fn friction(name: &'static str, conditions: &Conditions) -> Result<Made, Failure
     let curve = Curve { label: "identified friction".into(), points: near.collect(), band: vec![] };
     let axes = Axes {
         title: "Fig. 8: friction against velocity",
-        x: "velocity in um/s",
+        x: "velocity in µm/s",
         y: "friction in kgf",
         logarithmic: false,
     };

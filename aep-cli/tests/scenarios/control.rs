@@ -26,7 +26,7 @@ fn the_papers_table_is_compensated_without_any_file() {
     let header = "time_s,reference_m,pd_position_m,pd_force_N,pd_stuck,compensated_position_m,compensated_force_N,compensation_N,compensated_stuck";
     assert_eq!(desk.read("run.csv").lines().next(), Some(header));
     assert_eq!(desk.read("run.csv").lines().count(), 2002);
-    assert!(desk.read("run.svg").contains("tracking error, um"));
+    assert!(desk.read("run.svg").contains("tracking error, µm"));
 }
 
 #[test]

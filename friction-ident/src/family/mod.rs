@@ -29,7 +29,6 @@ use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regi
 use rayon::prelude::*;
 
 pub use preparation::{PreparationError, Prepared};
-pub use words::engineering;
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};

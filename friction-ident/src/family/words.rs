@@ -1,36 +1,7 @@
-//! Sizes and experiments in the words of an engineer.
+//! Values and experiments in the words of an engineer.
 
 use missing_physics::Term;
-
-/// A value with an SI prefix: `1.20 mm/s`, `7.03 MN/m`.
-pub fn engineering(value: f64, unit: &str) -> String {
-    const PREFIXES: [(f64, &str); 7] =
-        [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n")];
-    let prefixed = matches!(unit.chars().next(), Some('N' | 'm' | 's' | 'r' | 'H'))
-        // kg has its prefix already, and 1/s, powers and plain numbers take none.
-        && !unit.starts_with("kg")
-        && !unit.starts_with("m^");
-    let size = value.abs();
-    if !prefixed || size == 0.0 || (0.1..1000.0).contains(&size) {
-        return format!("{} {unit}", rounded(value)).trim_end().to_owned();
-    }
-    let (factor, prefix) =
-        PREFIXES.iter().find(|(factor, _)| size >= *factor).unwrap_or(&PREFIXES[6]);
-    format!("{} {prefix}{unit}", rounded(value / factor))
-}
-
-/// Three significant digits.
-fn rounded(value: f64) -> String {
-    let size = value.abs();
-    match size {
-        _ if size == 0.0 => "0".to_owned(),
-        _ if (100.0..1e5).contains(&size) => format!("{value:.0}"),
-        _ if (10.0..100.0).contains(&size) => format!("{value:.1}"),
-        _ if (1.0..10.0).contains(&size) => format!("{value:.2}"),
-        _ if (0.01..1.0).contains(&size) => format!("{value:.3}"),
-        _ => format!("{value:.2e}"),
-    }
-}
+use missing_physics::quantity::quantity;
 
 /// A term with its values.
 pub fn describe(term: &Term, values: &[f64]) -> String {
@@ -39,7 +10,7 @@ pub fn describe(term: &Term, values: &[f64]) -> String {
         .iter()
         .zip(values)
         .map(|(parameter, value)| {
-            format!("{} = {}", parameter.name, engineering(*value, &parameter.unit))
+            format!("{} = {}", parameter.name, quantity(*value, &parameter.unit))
         })
         .collect();
     words.join(", ")
@@ -57,7 +28,7 @@ const APART: [(&[&str], &str); 10] = [
     ),
     (
         &["stribeck", "presliding"],
-        "reverse within 5 to 50 um at several rates (only presliding is independent of rate), and creep at constant speeds from 0.05 to 5 mm/s without reversals",
+        "reverse within 5 to 50 µm at several rates (only presliding is independent of rate), and creep at constant speeds from 0.05 to 5 mm/s without reversals",
     ),
     (
         &["stribeck", "frictional-memory", "rising-static-friction"],
@@ -108,16 +79,6 @@ pub fn experiment(terms: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sizes_read_as_engineers_write_them() {
-        assert_eq!(engineering(0.0012, "m/s"), "1.20 mm/s");
-        assert_eq!(engineering(7.03e6, "N/m"), "7.03 MN/m");
-        assert_eq!(engineering(95.1, "kg"), "95.1 kg");
-        assert_eq!(engineering(-3.16, "N"), "-3.16 N");
-        assert_eq!(engineering(0.0, "N"), "0 N");
-        assert_eq!(engineering(3e-4, "s"), "300 us");
-    }
 
     #[test]
     fn confusable_effects_get_their_experiment() {
