@@ -1,18 +1,12 @@
-//! What a drive's residual may depend on, the regimes of its motion, and its repeats.
+//! What a drive's residual may depend on, and the repeats of its motion.
 
 use std::ops::Range;
 
-use missing_physics::{Coordinate, Recording, Regime};
+use missing_physics::{Coordinate, Recording};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Quantity};
 
-/// Distance after a reversal that belongs to it, as a share of the stroke.
-const REVERSAL: f64 = 1e-3;
-/// Speed below which motion is slow, as a share of the highest.
-const SLOW: f64 = 0.05;
-/// Acceleration above which motion is not uniform, as a share of its root mean square.
-const UNIFORM: f64 = 0.3;
 /// Two stretches of motion repeat each other where they differ by less than this share of the
 /// motion's standard deviation.
 const REPEATS: f64 = 0.02;
@@ -106,37 +100,6 @@ fn slope(values: &[f64], interval: f64) -> Vec<f64> {
         .map(|k| {
             let (before, after) = (k.saturating_sub(2), (k + 2).min(values.len() - 1));
             (values[after] - values[before]) / ((after - before).max(1) as f64 * interval)
-        })
-        .collect()
-}
-
-/// Exclusive regimes: just after a reversal, slow, speeding up or slowing down, uniform.
-pub fn regimes(p: &Prepared) -> Vec<Regime> {
-    let highest = p.velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-    let square: f64 = p.acceleration.iter().map(|a| a * a).sum();
-    let usual = (square / p.acceleration.len() as f64).sqrt();
-    let (low, high) =
-        p.position.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
-    let near = (REVERSAL * (high - low)).max(20.0 * p.position_noise);
-    let since = since_reversal(p);
-    let names = ["reversal", "slow motion", "acceleration", "uniform motion"];
-    let kind = |k: usize| {
-        if since[k] < near {
-            0
-        } else if p.velocity[k].abs() < SLOW * highest {
-            1
-        } else if p.acceleration[k].abs() > UNIFORM * usual {
-            2
-        } else {
-            3
-        }
-    };
-    names
-        .iter()
-        .enumerate()
-        .map(|(index, name)| Regime {
-            name: (*name).to_owned(),
-            member: p.grid.iter().map(|&k| kind(k) == index).collect(),
         })
         .collect()
 }

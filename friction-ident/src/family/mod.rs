@@ -12,6 +12,7 @@ mod generic;
 mod limits;
 mod plots;
 mod preparation;
+mod regimes;
 mod sweep;
 mod views;
 mod words;
@@ -92,7 +93,7 @@ impl FrictionFamily {
         let mut terms = vec![limits.mass()];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
         let coordinates = coordinates::coordinates(&prepared, axis, recording);
-        let regimes = coordinates::regimes(&prepared);
+        let regimes = regimes::regimes(&prepared);
         let mut family = Self {
             recording: recording.clone(),
             axis,
