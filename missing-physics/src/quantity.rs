@@ -10,7 +10,6 @@
 /// assert_eq!(quantity(0.0011, "m/s"), "1.10 mm/s");
 /// assert_eq!(quantity(203.5, "N s/m"), "204 N s/m");
 /// assert_eq!(quantity(5e-8, "m"), "50.0 nm");
-/// assert_eq!(quantity(1.25e7, "N/m"), "12.5 MN/m");
 /// ```
 pub fn quantity(value: f64, unit: &str) -> String {
     if unit.is_empty() || unit == "1" {
@@ -53,7 +52,7 @@ fn prefix(value: f64, unit: &str) -> (f64, &'static str) {
         _ if size < 0.999_5e-3 => (1e6, "µ"),
         // Forces are read in newtons, seconds in seconds: 0.29 N, not 290 mN.
         _ if size < 0.1 || (size < 0.999_5 && unit.starts_with('m')) => (1e3, "m"),
-        _ if size >= 1e7 && unit.starts_with('N') => (1e-6, "M"),
+        _ if size >= 1e6 && unit.starts_with('N') => (1e-6, "M"),
         _ if size >= 1e4 && unit.starts_with('N') => (1e-3, "k"),
         _ => (1.0, ""),
     }
@@ -88,6 +87,12 @@ mod tests {
             (0.001, "s", "1.00 ms"),
             (3e-6, "m", "3.00 µm"),
             (15_000.0, "N", "15.0 kN"),
+            (7.03e6, "N/m", "7.03 MN/m"),
+            (0.0012, "m/s", "1.20 mm/s"),
+            (95.1, "kg", "95.1 kg"),
+            (-3.16, "N", "-3.16 N"),
+            (0.0, "N", "0 N"),
+            (3e-4, "s", "300 µs"),
             (1e-7, "m", "100 nm"),
             (0.05, "", "0.0500"),
         ] {

@@ -200,6 +200,21 @@ fn structure_that_no_candidate_explains_is_called_so_with_its_coordinate() {
 }
 
 #[test]
+fn an_error_in_the_held_out_part_alone_is_told_and_nothing_is_never_missing_then() {
+    for seed in 0..3 {
+        let held_out = Split::new(POINTS, Vec::new()).validation(POINTS);
+        // So quick that it is a function of nothing.
+        let family = Family::new(500 + seed, 0.02, |t, _| {
+            let out = held_out[(t / INTERVAL).round() as usize];
+            if out { 0.3 * (1e5 * t * t).sin() } else { 0.0 }
+        });
+        let found = family.discover(seed);
+        assert_ne!(found.verdict, Verdict::NothingMissing);
+        assert!(found.summary.contains("held-out part errs"), "{}", found.summary);
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_discovery_on_one_thread_and_on_two() {
     let family = Family::new(7, 0.05, |_, x| 0.4 * x * x);
     let on = |threads: usize| {

@@ -141,9 +141,7 @@ fn ratio(family: &FrictionFamily, found: &Discovery, case: &Case) -> Option<f64>
     let weights: Vec<f64> =
         split.fit(family.target().len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
     let truth = search::identify(family, &full, &weights, 1).fit;
-    let quantity = family.quantity();
-    let key = format!("{}_rms_{}", quantity.name, quantity.unit);
-    let error = found.ladder.last()?.error.get(&key)?.validation;
+    let error = found.ladder.last()?.metrics.as_ref()?.validation.rms;
     Some(error / split.rms(&truth.residual).validation)
 }
 

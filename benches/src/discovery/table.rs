@@ -301,7 +301,8 @@ impl<'a> Plant<'a> {
         let table = self.table;
         self.commands.push_back(command);
         let arrived = self.commands.pop_front().unwrap_or(command);
-        let arrived = arrived.clamp(-table.limit(), table.limit());
+        let limit = table.limit();
+        let arrived = arrived.clamp(-limit, limit);
         let lag = table.size_of(Hidden::ActuatorLag).unwrap_or(0.0);
         self.force =
             if lag > 0.0 { arrived + (self.force - arrived) * (-h / lag).exp() } else { arrived };

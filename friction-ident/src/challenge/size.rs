@@ -88,8 +88,7 @@ impl Knob {
         let amplitude = about.parameters.iter().any(|p| p.role == Role::Amplitude);
         let first = about.parameters.iter().find(|p| p.role == Role::Shape);
         match first {
-            // The lower the limit of a drive, the larger its effect.
-            Some(shape) if about.name == "saturation" => {
+            Some(shape) if about.is_limit_of_drive(shape) => {
                 Self { shape: Some(shape.name), low: 20.0, high: 1e-2 }
             }
             Some(shape) if !amplitude => Self { shape: Some(shape.name), low: 1e-2, high: 20.0 },

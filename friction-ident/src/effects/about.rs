@@ -178,6 +178,13 @@ impl About {
         self.parameters.iter().position(|parameter| parameter.name == name)
     }
 
+    /// Whether `parameter` is the largest force that a drive gives: the lower it is, the more the effect does.
+    pub fn is_limit_of_drive(&self, parameter: &Parameter) -> bool {
+        parameter.quantity == Quantity::Force
+            && parameter.role == Role::Shape
+            && self.acts_on(Slot::Drive)
+    }
+
     /// Whether it acts through `slot`.
     pub fn acts_on(&self, slot: Slot) -> bool {
         self.slots.contains(&slot)

@@ -99,10 +99,12 @@ impl Limits {
 
     fn parameter(&self, parameter: &effects::Parameter, about: &About) -> Parameter {
         let amplitude = is_amplitude(about, parameter);
-        let (lower, upper, start) = match parameter.quantity {
-            _ if amplitude => self.amplitude(parameter),
-            Quantity::Force if about.acts_on(effects::Slot::Drive) => self.limit_of_drive(),
-            _ => self.shape(parameter),
+        let (lower, upper, start) = if amplitude {
+            self.amplitude(parameter)
+        } else if about.is_limit_of_drive(parameter) {
+            self.limit_of_drive()
+        } else {
+            self.shape(parameter)
         };
         Parameter {
             name: parameter.name.into(),

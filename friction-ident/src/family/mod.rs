@@ -93,7 +93,7 @@ impl FrictionFamily {
         let mut terms = vec![limits.mass()];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
         let coordinates = coordinates::coordinates(&prepared, axis, recording);
-        let regimes = regimes::regimes(&prepared);
+        let regimes = regimes::regimes(&prepared, stroke);
         let mut family = Self {
             recording: recording.clone(),
             axis,

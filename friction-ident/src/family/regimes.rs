@@ -27,31 +27,31 @@ const NAMES: [&str; 7] = [
 ];
 
 /// The regimes of a motion on the comparison grid; those that it has.
-pub fn regimes(p: &Prepared) -> Vec<Regime> {
+pub fn regimes(p: &Prepared, stroke: (f64, f64)) -> Vec<Regime> {
     let highest = p.velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
     let square: f64 = p.acceleration.iter().map(|a| a * a).sum();
     let usual = (square / p.acceleration.len() as f64).sqrt();
-    let (low, high) =
-        p.position.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
-    let near = (NEAR * (high - low)).max(20.0 * p.position_noise);
+    let near = (NEAR * (stroke.1 - stroke.0)).max(20.0 * p.position_noise);
     let starts = starts(p, near);
-    let kind = |k: usize| {
+    let name = |k: usize| {
         let (speed, start) = (p.velocity[k].abs(), &starts[k]);
+        let just_started = (p.position[k] - start.position).abs() < near;
         match () {
-            () if p.moving[k] == 0.0 => 0,
-            () if (p.position[k] - start.position).abs() < near => 2 - usize::from(start.from_rest),
-            () if speed < SLOW * highest => 3,
-            () if p.acceleration[k].abs() > UNIFORM * usual => 4,
-            () => 5 + usize::from(speed < FAST * highest),
+            () if p.moving[k] == 0.0 => "stick",
+            () if just_started && start.from_rest => "breakaway",
+            () if just_started => "reversal",
+            () if speed < SLOW * highest => "slow motion",
+            () if p.acceleration[k].abs() > UNIFORM * usual => "acceleration",
+            () if speed >= FAST * highest => "fast motion",
+            () => "uniform motion",
         }
     };
-    let kinds: Vec<usize> = p.grid.iter().map(|&k| kind(k)).collect();
+    let all: Vec<&str> = p.grid.iter().map(|&k| name(k)).collect();
     NAMES
         .iter()
-        .enumerate()
-        .map(|(index, name)| Regime {
+        .map(|name| Regime {
             name: (*name).to_owned(),
-            member: kinds.iter().map(|kind| *kind == index).collect(),
+            member: all.iter().map(|other| other == name).collect(),
         })
         .filter(|regime| regime.member.contains(&true))
         .collect()
@@ -91,7 +91,7 @@ fn starts(p: &Prepared, near: f64) -> Vec<Origin> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::challenge::{Hide, Level, generate};
+    use crate::challenge::{Hide, Level, STROKE, generate};
     use crate::reference::Profile;
     use missing_physics::{Channel, Recording};
 
@@ -99,7 +99,7 @@ mod tests {
     fn every_instant_is_in_one_regime_and_a_table_that_creeps_rests_and_runs_has_all() {
         let made = generate(&Hide::Nothing, 1, Level::Clear).unwrap();
         let prepared = Prepared::new(&made.recording, None).unwrap();
-        let regimes = regimes(&prepared);
+        let regimes = regimes(&prepared, (0.0, STROKE));
         let names: Vec<&str> = regimes.iter().map(|regime| regime.name.as_str()).collect();
         assert_eq!(names, NAMES);
         for k in 0..prepared.grid.len() {
