@@ -65,6 +65,14 @@ impl Memory for Backlash {
             *state = (*state + taken.displacement[i] / p.get(1)[i]).clamp(-0.5, 0.5);
         }
     }
+
+    /// At an end of the gap both sides move together.
+    fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
+        for (i, state) in state.iter_mut().enumerate() {
+            let moved = (*state + displacement[i] / p.get(1)[i]).clamp(-0.5, 0.5);
+            *state = if state.abs() < 0.5 { moved } else { *state };
+        }
+    }
 }
 
 #[cfg(test)]

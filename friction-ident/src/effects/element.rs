@@ -63,6 +63,11 @@ pub trait Element: Sync + Send {
         }
     }
 
+    /// Follows an observer that moves the estimate of the mass: what hangs on the mass moves with it, and
+    /// what touches the ground is bent where it holds. Nothing slides for it: corrections of alternating
+    /// sign must not ratchet a contact.
+    fn correct(&self, _p: Parameters<'_>, _c: &Correction<'_>, _state: &mut [f64]) {}
+
     /// Force at every sample of a measured path: the state's force where there is one, else the mean
     /// of the steps before and after.
     fn along(&self, p: &[f64], path: &[Leg], state: &mut [f64], force: &mut [f64]) {
@@ -128,6 +133,19 @@ pub struct Step<'a> {
     /// Displacement of the mass in the step, m or rad.
     pub displacement: &'a [f64],
     /// Friction level in the step, N or N m.
+    pub level: &'a [f64],
+    /// Friction level at rest, N or N m, for elements that ask for it.
+    pub breakaway: &'a [f64],
+}
+
+/// A correction of the estimated motion of the mass, see [`Element::correct`].
+#[derive(Clone, Copy, Debug)]
+pub struct Correction<'a> {
+    /// Added to the position, m or rad.
+    pub displacement: &'a [f64],
+    /// Added to the velocity, m/s or rad/s.
+    pub velocity: &'a [f64],
+    /// Friction level of the last step, N or N m.
     pub level: &'a [f64],
     /// Friction level at rest, N or N m, for elements that ask for it.
     pub breakaway: &'a [f64],

@@ -2,8 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::{About, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step};
+use super::{
+    About, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step,
+};
 use crate::axis::Quantity;
+use crate::simd::add_to;
 
 /// A second mass `m_L` on spring and damper; the model's own mass is the one in front.
 #[derive(Clone, Copy, Debug)]
@@ -92,6 +95,11 @@ impl Element for FlexibleCoupling {
             state[i] += r * swing.mean - moved;
             state[lanes + i] += 2.0 * (swing.mean - state[lanes + i]);
         }
+    }
+
+    /// Both bodies move together.
+    fn correct(&self, _p: Parameters<'_>, c: &Correction<'_>, state: &mut [f64]) {
+        add_to(&mut state[c.velocity.len()..], c.velocity);
     }
 
     fn iterations(&self) -> usize {

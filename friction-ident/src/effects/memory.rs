@@ -29,6 +29,10 @@ pub trait Memory: Sync + Send {
 
     /// Takes a piece of motion into the state.
     fn remember(&self, _p: Parameters<'_>, _taken: &Taken<'_>, _state: &mut [f64]) {}
+
+    /// Follows an observer that moves the estimate of the position by `displacement`, m or rad: see
+    /// [`super::Element::correct`].
+    fn correct(&self, _p: Parameters<'_>, _displacement: &[f64], _state: &mut [f64]) {}
 }
 
 /// What a [`Memory`] may change.

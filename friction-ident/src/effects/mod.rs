@@ -45,7 +45,7 @@ use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
 pub use drive::{Advance, Drive};
-pub use element::{Balance, Element, Leg, Onset, Response, Step};
+pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
 pub use memory::{Memory, Recalled, Taken};

@@ -3,7 +3,9 @@
 mod bristle;
 mod maxwell;
 
-use super::{About, Balance, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step};
+use super::{
+    About, Balance, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step,
+};
 use crate::axis::Quantity;
 use crate::simd::{limited, vectorised};
 
@@ -139,6 +141,13 @@ impl Element for Presliding {
         true
     }
 
+    /// What slides goes on sliding; what holds is bent, up to what it can hold.
+    fn correct(&self, p: Parameters<'_>, c: &Correction<'_>, state: &mut [f64]) {
+        let hold = self.hold(c.level, c.breakaway);
+        let (held, slides) = state.split_at_mut(c.level.len());
+        correct(p.get(0), c.displacement, hold, slides, held);
+    }
+
     fn needs_breakaway(&self) -> bool {
         self.breakaway == Breakaway::Static
     }
@@ -226,6 +235,23 @@ vectorised! {
             let (end, breaks) = at_end(start, trial, slides[i], level[i], hold[i]);
             held[i] = end;
             slides[i] = if breaks { 1.0 } else { 0.0 };
+        }
+    }
+
+    fn correct(
+        stiffness: &[f64],
+        moved: &[f64],
+        hold: &[f64],
+        slides: &[f64],
+        held: &mut [f64],
+    ) {
+        let n = held.len();
+        let (stiffness, moved) = (&stiffness[..n], &moved[..n]);
+        let (hold, slides) = (&hold[..n], &slides[..n]);
+        for i in 0..n {
+            let bent = limited(held[i] + stiffness[i] * moved[i], hold[i]);
+            let holds = slides[i] == 0.0 && held[i].abs() < hold[i];
+            held[i] = if holds { bent } else { held[i] };
         }
     }
 

@@ -15,6 +15,7 @@
 //!   applied force is within the level, and slides off otherwise, in the rest of the same step.
 //! * With a pre-sliding contact the friction force is continuous and there is no event to locate.
 
+mod correct;
 mod error;
 mod hooks;
 mod kernels;

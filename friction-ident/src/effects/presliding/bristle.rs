@@ -1,8 +1,8 @@
 //! Dahl's and `LuGre`'s contact: a bristle whose force approaches the friction level smoothly.
 
 use super::{
-    About, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS, STIFFNESS,
-    Slot, Step,
+    About, Correction, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS,
+    STIFFNESS, Slot, Step,
 };
 use crate::effects::Leg;
 use crate::simd::limited;
@@ -90,6 +90,17 @@ impl Element for Bristle {
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
         for (i, state) in state.iter_mut().enumerate() {
             *state = bent(*state, step.displacement[i], p.get(0)[i], step.level[i]).0;
+        }
+    }
+
+    /// Bent by the share that does not slide already. Fed through the contact as if the mass had moved, noise of
+    /// alternating sign would unload a sliding contact twice as fast as it loads it again.
+    fn correct(&self, p: Parameters<'_>, c: &Correction<'_>, state: &mut [f64]) {
+        for (i, state) in state.iter_mut().enumerate() {
+            let level = c.level[i];
+            let held = limited(*state, level);
+            let used = held / level.max(f64::MIN_POSITIVE);
+            *state = limited(held + p.get(0)[i] * c.displacement[i] * (1.0 - used * used), level);
         }
     }
 

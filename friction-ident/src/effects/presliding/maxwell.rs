@@ -1,8 +1,8 @@
 //! Generalised Maxwell slip: springs in parallel that slip one after the other.
 
 use super::{
-    About, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS, STIFFNESS,
-    Slot, Step,
+    About, Correction, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS,
+    STIFFNESS, Slot, Step,
 };
 use crate::simd::limited;
 
@@ -87,6 +87,19 @@ impl Element for MaxwellSlip {
             for (e, stiffness) in stiffnesses(p.get(0)[i], p.get(1)[i]).into_iter().enumerate() {
                 let held = limited(state[e * lanes + i], cap);
                 state[e * lanes + i] = limited(held + stiffness * step.displacement[i], cap);
+            }
+        }
+    }
+
+    /// Elements that slide go on sliding; those that hold are bent.
+    fn correct(&self, p: Parameters<'_>, c: &Correction<'_>, state: &mut [f64]) {
+        let lanes = c.level.len();
+        for i in 0..lanes {
+            let cap = c.level[i] / ELEMENTS as f64;
+            for (e, stiffness) in stiffnesses(p.get(0)[i], p.get(1)[i]).into_iter().enumerate() {
+                let held = &mut state[e * lanes + i];
+                let bent = limited(*held + stiffness * c.displacement[i], cap);
+                *held = if held.abs() < cap { bent } else { *held };
             }
         }
     }
