@@ -25,6 +25,7 @@ pub mod family;
 pub mod identify;
 pub mod model;
 pub mod paper;
+pub mod predictor;
 pub mod reference;
 pub mod simulator;
 pub mod windows;

@@ -105,6 +105,11 @@ pub fn check(recording: &Recording) -> DataCheck {
     check
 }
 
+/// The size of one count of a channel; nothing where its values are continuous.
+pub fn count_of(values: &[f64]) -> Option<f64> {
+    quantum::of(values)
+}
+
 fn channel(channel: &Channel) -> ChannelCheck {
     let values = &channel.values;
     let squares: f64 = values.iter().map(|value| value * value).sum();

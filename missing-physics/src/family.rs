@@ -193,6 +193,11 @@ pub trait ModelFamily: Sync {
         crate::shapes::columns(self, model, prediction, term, shape)
     }
 
+    /// The recording one sample ahead, where the family can predict so.
+    fn ahead(&self) -> Option<&dyn crate::ahead::Ahead> {
+        None
+    }
+
     /// The term that this one is another form of, if any. A form stands for its effect only where it is
     /// clearly better than the main one.
     fn form_of(&self, _term: usize) -> Option<usize> {

@@ -5,6 +5,7 @@
 //! on held-out data. The engine knows nothing of friction or any other subject: it works for every
 //! [`ModelFamily`].
 
+pub mod ahead;
 pub mod autocorrelation;
 pub mod basis;
 mod climb;

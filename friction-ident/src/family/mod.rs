@@ -3,6 +3,7 @@
 //!
 //! Every effect of the library is a candidate term; the mass is part of every model.
 
+mod ahead;
 pub mod compare;
 mod coordinates;
 pub mod experiment;
@@ -70,6 +71,7 @@ pub struct FrictionFamily {
     motion: Vec<Vec<f64>>,
     blocks: Vec<Range<usize>>,
     stroke: (f64, f64),
+    ahead: Option<ahead::OneAhead>,
 }
 
 impl FrictionFamily {
@@ -108,9 +110,13 @@ impl FrictionFamily {
             motion: coordinates::motion(&prepared),
             blocks: coordinates::cycles(&prepared),
             stroke,
+            ahead: None,
             prepared,
         };
-        family.doubt = family.disagreement();
+        let (simple, doubt) = family.disagreement();
+        family.doubt = doubt;
+        let mass = simple[0].max(0.02 * family.terms[0].parameters[0].start);
+        family.ahead = ahead::OneAhead::new(recording, mass, simple[1].max(0.0));
         Ok(family)
     }
 
@@ -221,7 +227,7 @@ impl FrictionFamily {
 
     /// How far the prediction of a simple model moves when the motion is smoothed more heavily:
     /// around reversals and impacts, where the smoother matters, much; elsewhere hardly.
-    fn disagreement(&self) -> Vec<f64> {
+    fn disagreement(&self) -> (Vec<f64>, Vec<f64>) {
         let p = &self.prepared;
         let sliding = |motion: &MeasuredMotion<'_>| motion.sliding();
         let columns = |velocity: &[f64], acceleration: &[f64]| {
@@ -240,12 +246,13 @@ impl FrictionFamily {
                 *value += DOUBT * factor * (a - b);
             }
         }
-        (0..difference.len())
+        let doubt = (0..difference.len())
             .map(|k| {
                 let near = k.saturating_sub(1)..(k + 2).min(difference.len());
                 difference[near].iter().fold(0.0, |most: f64, value| most.max(value.abs()))
             })
-            .collect()
+            .collect();
+        (simple, doubt)
     }
 
     fn is_simple(&self, term: usize) -> bool {
@@ -348,6 +355,10 @@ impl ModelFamily for FrictionFamily {
                 .map(|shape| self.columns(model, prediction, term, shape))
                 .collect(),
         }
+    }
+
+    fn ahead(&self) -> Option<&dyn missing_physics::ahead::Ahead> {
+        self.ahead.is_some().then_some(self as _)
     }
 
     fn form_of(&self, term: usize) -> Option<usize> {

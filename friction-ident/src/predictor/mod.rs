@@ -1,0 +1,213 @@
+//! One sample ahead: the prediction errors of models along a recording.
+//!
+//! The plant is simulated as it is, stick and all, under the recorded force; at every sample its state is
+//! corrected by the prediction error times the gain of a Kalman filter. What is left are innovations: with
+//! the true model they are as large as the noise of encoder and force makes them, and white; whatever the
+//! model lacks makes them larger. This is the innovations form of prediction-error methods (L. Ljung, System
+//! Identification, 1999, ch. 5 and 7).
+//!
+//! The gain stands for what the model does not know: a white force that is added to the recorded one. A
+//! ladder of such forces is held ready, and each model is judged at the one that suits it best; a second
+//! ladder trusts the model while the axis is at rest, where friction holds whatever else acts.
+
+mod gain;
+mod noise;
+
+use std::ops::Range;
+
+use missing_physics::{Hold, Recording};
+use rayon::prelude::*;
+
+pub use noise::Noise;
+
+use crate::effects::Slot;
+use crate::model::Model;
+use crate::simulator::{Input, Plants, Start};
+use gain::{Gain, gains};
+
+/// Longest step of the simulation, s, and that with a second body.
+const STEP: f64 = 1.25e-3;
+const STEP_OF_TWO: f64 = 5e-4;
+/// Process noise of the ladder: the smallest as a share of the rms force, the factor from rung to rung, and the
+/// number of rungs.
+const LEAST: f64 = 1e-3;
+const FACTOR: f64 = 3.2;
+const RUNGS: usize = 7;
+/// Time at the start of a piece, s, in which states that nobody knows settle; at most this share of the piece.
+const SETTLING: f64 = 0.3;
+const SETTLING_SHARE: f64 = 0.1;
+/// Largest error that is fed back, as a share of the stroke: a wild sample must not throw the state away.
+const FED_BACK: f64 = 0.02;
+/// Speed of rest, in standard deviations of the position per sampling interval.
+const REST: f64 = 0.5;
+/// Errors in standard deviations beyond which they are cut off: a model that runs away.
+const LIMIT: f64 = 1e4;
+/// Fewest and most plants that advance together.
+const LANES: (usize, usize) = (8, 32);
+
+/// What is needed of a recording to predict it.
+#[derive(Clone, Debug)]
+pub struct Predictor {
+    time: Vec<f64>,
+    position: Vec<f64>,
+    force: Vec<f64>,
+    hold: Hold,
+    segments: Vec<Range<usize>>,
+    noise: Noise,
+    /// Samples that count, in order.
+    counted: Vec<usize>,
+    /// Process noise of the ladder, N.
+    ladder: Vec<f64>,
+    gains: Vec<Gain>,
+    fed_back: f64,
+    rest_speed: f64,
+}
+
+impl Predictor {
+    /// A predictor for a recording with channels `force` and `position`, its gains made for a plant of `mass`
+    /// and `damping` (SI).
+    pub fn new(recording: &Recording, mass: f64, damping: f64) -> Option<Self> {
+        let force = recording.channel("force")?.values.clone();
+        let position = recording.channel("position")?.values.clone();
+        let noise = Noise::of(recording, mass)?;
+        let rms = (force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64).sqrt();
+        let ladder = (0..RUNGS).map(|k| rms * LEAST * FACTOR.powi(k as i32)).collect();
+        let stroke = position.iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
+        let mut predictor = Self {
+            time: recording.time().to_vec(),
+            hold: recording.hold(),
+            segments: recording.segments().to_vec(),
+            counted: Vec::new(),
+            ladder,
+            gains: Vec::new(),
+            fed_back: FED_BACK * (stroke.1 - stroke.0),
+            rest_speed: REST * noise.position / recording.interval().max(f64::MIN_POSITIVE),
+            position,
+            force,
+            noise,
+        };
+        predictor.counted = predictor.segments.iter().flat_map(|s| predictor.settled(s)).collect();
+        predictor.tune(mass, damping);
+        (!predictor.counted.is_empty()).then_some(predictor)
+    }
+
+    /// Samples of a piece from which on its start no longer matters.
+    fn settled(&self, segment: &Range<usize>) -> Range<usize> {
+        let until = self.time[segment.start] + SETTLING;
+        let by_time = self.time[segment.clone()].iter().take_while(|t| **t < until).count();
+        let skipped = by_time.max(20).min((segment.len() as f64 * SETTLING_SHARE) as usize);
+        segment.start + skipped.max(1).min(segment.len())..segment.end
+    }
+
+    /// Makes the gains for a plant of `mass` and `damping`.
+    pub fn tune(&mut self, mass: f64, damping: f64) {
+        let each = |process: &f64| {
+            let force = process.hypot(self.noise.force);
+            gains(&self.time, &self.segments, &self.counted, (mass, damping), (self.noise.position, force))
+        };
+        self.gains = self.ladder.iter().map(each).collect();
+    }
+
+    /// What is known of the noise.
+    pub fn noise(&self) -> &Noise {
+        &self.noise
+    }
+
+    /// Indices of the samples that count.
+    pub fn counted(&self) -> &[usize] {
+        &self.counted
+    }
+
+    /// Number of process noises: the ladder, and the ladder with trust at rest.
+    pub fn settings(&self) -> usize {
+        2 * self.ladder.len()
+    }
+
+    /// Process noise of a setting, N.
+    pub fn process(&self, setting: usize) -> f64 {
+        self.ladder[setting % self.ladder.len()]
+    }
+
+    /// Innovation that is to be expected at a setting, m or rad: its standard deviation at a typical sample.
+    pub fn expected(&self, setting: usize) -> f64 {
+        self.gains[setting % self.ladder.len()].expected
+    }
+
+    /// Innovation that the sensors alone make: the smallest process noise beside that of the recorded force.
+    pub fn budget(&self) -> f64 {
+        self.gains[1.min(self.gains.len() - 1)].expected
+    }
+
+    /// Prediction errors of models of the same effects, each at its own setting, at the samples that count: m or
+    /// rad, each brought to the size that it would have at a typical sample.
+    pub fn errors(&self, models: &[(Model, usize)]) -> Vec<Vec<f64>> {
+        let threads = rayon::current_num_threads().max(1);
+        let lanes = models.len().div_ceil(threads).next_multiple_of(4).clamp(LANES.0, LANES.1);
+        let batches: Vec<Vec<Vec<f64>>> =
+            models.par_chunks(lanes).map(|batch| self.batch(batch)).collect();
+        batches.into_iter().flatten().collect()
+    }
+
+    fn batch(&self, trials: &[(Model, usize)]) -> Vec<Vec<f64>> {
+        let lanes = trials.len();
+        let models: Vec<Model> = trials.iter().map(|(model, _)| model.clone()).collect();
+        let Ok(mut plants) = Plants::new(&models) else {
+            return vec![vec![f64::NAN; self.counted.len()]; lanes];
+        };
+        let rungs = self.ladder.len();
+        let gain: Vec<&Gain> = trials.iter().map(|(_, s)| &self.gains[s % rungs]).collect();
+        let at_rest: Vec<&Gain> =
+            trials.iter().map(|(_, s)| &self.gains[if *s < rungs { *s } else { 0 }]).collect();
+        let two = models[0].acts_on(Slot::Attached);
+        let step = if two { STEP_OF_TWO } else { STEP };
+        let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
+        let mut errors = vec![Vec::with_capacity(self.counted.len()); lanes];
+        let (mut length, mut command) = (vec![0.0; lanes], vec![0.0; lanes]);
+        let (mut dx, mut dv) = (vec![0.0; lanes], vec![0.0; lanes]);
+        let mut counted = self.counted.iter().copied().peekable();
+        for segment in &self.segments {
+            let start = self.start(segment);
+            (0..lanes).for_each(|i| plants.start(i, &start));
+            for k in segment.start..segment.end - 1 {
+                let (steps, duration) = input.steps(k);
+                length.fill(duration);
+                for j in 0..steps {
+                    command.fill(input.mean(k, j, steps));
+                    plants.step(&length, &command);
+                }
+                let n = k + 1;
+                let counts = counted.next_if_eq(&n).is_some();
+                let (measured, shown, velocity) =
+                    (self.position[n], plants.shown(), plants.velocity());
+                for i in 0..lanes {
+                    let error = measured - shown[i];
+                    let slow = velocity[i].abs() < self.rest_speed;
+                    let g = if slow { at_rest[i] } else { gain[i] };
+                    if counts {
+                        // A model that runs away errs as much as can be, whatever it says.
+                        let (scaled, cut) = (error * gain[i].relative[n], LIMIT * gain[i].expected);
+                        errors[i].push(if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut });
+                    }
+                    let finite = error.is_finite();
+                    let fed = if finite { error.clamp(-self.fed_back, self.fed_back) } else { 0.0 };
+                    dx[i] = g.position[n] * fed;
+                    dv[i] = g.velocity[n] * fed;
+                }
+                plants.correct(&dx, &dv);
+            }
+        }
+        errors
+    }
+
+    /// Where a piece starts: at rest, unless the first samples move by more than their noise.
+    fn start(&self, segment: &Range<usize>) -> Start {
+        let first = segment.start;
+        let next = (first + 4).min(segment.end - 1);
+        let moved = self.position[next] - self.position[first];
+        let moves = moved.abs() > 6.0 * self.noise.position;
+        let duration = (self.time[next] - self.time[first]).max(f64::MIN_POSITIVE);
+        let velocity = if moves { moved / duration } else { 0.0 };
+        let command = self.force[first];
+        Start { time: self.time[first], command, ..Start::at(self.position[first], velocity) }
+    }
+}

@@ -1,0 +1,495 @@
+//! The search over sets of effects: the best few sets of each size side by side.
+//!
+//! From each set the candidates are screened to first order, the most promising are fitted, and each is given
+//! another shape of its own before a further effect may be named. Of each size the set stands that predicts best,
+//! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
+
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+use super::compare::{Comparison, Difference};
+use super::decision::{Decision, Outcome};
+use super::node::Node;
+use super::screen::{Promise, screen};
+use super::{Ahead, fit, scales};
+use crate::family::{Fitted, ModelFamily};
+
+/// Numbers that steer a search. Each stands in docs/decisions.md with what half and one and a half times of it do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thresholds {
+    /// Held-out log-likelihood that an effect must gain, nats.
+    pub better: f64,
+    /// Share of all that is explained that an effect must explain.
+    pub share: f64,
+    /// Sets this near to the best of their size are as good: nats, or this share of the gain.
+    pub as_good: (f64, f64),
+    /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
+    pub complete: f64,
+    /// Sets that are followed side by side.
+    pub beam: usize,
+    /// Candidates that are fitted beside each set.
+    pub fitted: usize,
+    /// Most effects of a set.
+    pub most: usize,
+}
+
+impl Default for Thresholds {
+    fn default() -> Self {
+        Self { better: 100.0, share: 0.02, as_good: (6.0, 0.02), complete: 1.3, beam: 3, fitted: 5, most: 4 }
+    }
+}
+
+/// Steps of a first fit, of a refit elsewhere, and of the last one.
+const STEPS: (usize, usize, usize) = (6, 6, 12);
+/// Promise below which a candidate is not fitted: beside the base, and beside other effects; nats.
+const PROMISING: (f64, f64) = (2.0, 50.0);
+/// A form must be better than another one by this much to take its place, nats.
+const FORM: f64 = 4.0;
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The base model.
+    pub base: Node,
+    /// The model of every rung above it, the last one with all that was found.
+    pub rungs: Vec<Node>,
+    /// Term that each rung adds.
+    pub added: Vec<usize>,
+    /// What each rung gains over the one before.
+    pub gains: Vec<Difference>,
+    /// What the last model loses without each of the terms added.
+    pub costs: Vec<Difference>,
+    /// Sets of terms that predict as well as the ones found.
+    pub as_good: Vec<Vec<usize>>,
+    /// Candidates of each rung with what they gain, the best first.
+    pub ranking: Vec<Vec<(usize, Fitted, f64)>>,
+    /// Every comparison.
+    pub decisions: Vec<Decision>,
+    /// Terms that were not tried because time ran out.
+    pub untried: Vec<usize>,
+    /// Whether the search was cut short.
+    pub stopped: bool,
+}
+
+/// A running search.
+pub struct Search<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    ahead: &'a dyn Ahead,
+    comparison: Comparison<'a, F>,
+    thresholds: Thresholds,
+    /// Terms that may be added.
+    candidates: Vec<usize>,
+    decisions: Vec<Decision>,
+    stop: &'a dyn Fn() -> bool,
+    untried: BTreeSet<usize>,
+    pub(super) started: Instant,
+}
+
+impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
+    /// A search among `candidates` that ends early where `stop` says so.
+    pub fn new(
+        family: &'a F,
+        ahead: &'a dyn Ahead,
+        thresholds: Thresholds,
+        candidates: Vec<usize>,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Self {
+        Self {
+            family,
+            ahead,
+            comparison: Comparison::new(family, ahead),
+            thresholds,
+            candidates,
+            decisions: Vec::new(),
+            stop,
+            untried: BTreeSet::new(),
+            started: Instant::now(),
+        }
+    }
+
+    /// The base model at its best, from a start that need not be near.
+    pub fn base(&self, start: Fitted) -> Node {
+        let half = self.ahead.settings() / 2;
+        let mut model = start;
+        let mut node = None;
+        // From much process noise to little: the valley narrows.
+        for setting in [half - 1, half.saturating_sub(3), half.saturating_sub(5)] {
+            let fitted = fit::fit(self.family, self.ahead, model, setting, 8);
+            model = fitted.model.clone();
+            node = Some(fitted);
+        }
+        let node = node.unwrap_or_else(|| fit::evaluated(self.ahead, model, 0));
+        fit::settled(self.family, self.ahead, node, STEPS.0)
+    }
+
+    /// Searches from a base model.
+    pub fn run(mut self, base: Node) -> Found {
+        let (nodes, ranking) = self.climb(&base);
+        let best = self.size(&base, &nodes);
+        let (last, costs) = self.prune(&base, best, &nodes);
+        let last = self.plainest(last);
+        self.conclude(base, last, costs, &nodes, ranking)
+    }
+
+    /// Sets of effects by their number, the best first.
+    #[expect(clippy::type_complexity, reason = "the ranking of each rung")]
+    fn climb(&mut self, base: &Node) -> (Vec<Vec<Node>>, Vec<Vec<(usize, Fitted, f64)>>) {
+        let mut nodes = vec![vec![base.clone()]];
+        let mut ranking = Vec::new();
+        let mut beam = vec![base.clone()];
+        for size in 1..=self.thresholds.most {
+            let mut next: Vec<(Node, Difference)> = Vec::new();
+            for (place, from) in beam.iter().enumerate() {
+                let (children, promises) = self.expand(from, size);
+                if place == 0 {
+                    ranking.push(self.ranked(from, &children, &promises));
+                }
+                for child in children {
+                    let gain = self.comparison.compare(from, &child);
+                    let outcome =
+                        if gain.nats > self.thresholds.better { Outcome::AsGood } else { Outcome::TooLittle };
+                    self.note(size, &child, from, gain, outcome, "");
+                    if gain.nats <= self.thresholds.better {
+                        continue;
+                    }
+                    let same = |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
+                    match next.iter().position(same) {
+                        Some(k) if self.comparison.compare(&next[k].0, &child).nats > 0.0 => {
+                            next[k] = (child, gain);
+                        }
+                        Some(_) => {}
+                        None => next.push((child, gain)),
+                    }
+                }
+                if (self.stop)() {
+                    break;
+                }
+            }
+            let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
+            if ranked.is_empty() {
+                break;
+            }
+            // Inside the budget rivals need no extension.
+            let width = if self.budget(&ranked[0]) < 1.12 { 1 } else { self.thresholds.beam };
+            beam = ranked.iter().take(width).cloned().collect();
+            nodes.push(ranked);
+            if (self.stop)() {
+                break;
+            }
+        }
+        (nodes, ranking)
+    }
+
+    /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
+    fn expand(&mut self, from: &Node, size: usize) -> (Vec<Node>, Vec<Promise>) {
+        let open: Vec<usize> = self
+            .candidates
+            .iter()
+            .copied()
+            .filter(|&term| self.family.joins(&from.model, term))
+            .collect();
+        if (self.stop)() {
+            self.untried.extend(open);
+            return (Vec::new(), Vec::new());
+        }
+        let promises = screen(self.family, self.ahead, from, &open);
+        let least = if size == 1 { PROMISING.0 } else { PROMISING.1 };
+        // Two forms of an effect at most, so that one effect does not take all places.
+        let mut mains: Vec<usize> = Vec::new();
+        let mut fitted: Vec<Node> = Vec::new();
+        for promise in promises.iter().filter(|promise| promise.gain > least) {
+            let main = self.main(promise.term);
+            let forms = mains.iter().filter(|other| **other == main).count();
+            let distinct = mains.iter().collect::<BTreeSet<_>>().len();
+            if forms >= 2 || (forms == 0 && distinct >= self.thresholds.fitted) {
+                continue;
+            }
+            if (self.stop)() {
+                self.untried.insert(promise.term);
+                continue;
+            }
+            mains.push(main);
+            fitted.push(fit::fit(self.family, self.ahead, promise.start.clone(), from.setting, STEPS.0));
+        }
+        fitted.sort_by(|a, b| a.scale.total_cmp(&b.scale));
+        let keep = if size == 1 { fitted.len() } else { self.thresholds.beam + 1 };
+        let settled: Vec<Node> = fitted
+            .into_iter()
+            .take(keep)
+            .map(|node| fit::settled(self.family, self.ahead, node, STEPS.1))
+            .collect();
+        let mut settled = settled;
+        settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
+        let shaped = settled.into_iter().enumerate().map(|(place, node)| {
+            if place <= self.thresholds.beam { self.shaped(node) } else { node }
+        });
+        (shaped.collect(), promises)
+    }
+
+    /// The node, or the same with effects in their flexible forms where that is clearly better.
+    fn shaped(&self, node: Node) -> Node {
+        let mut best = node.clone();
+        let mut start = node.model.clone();
+        let mut changed = false;
+        for term in node.effects(self.family) {
+            if let Some(flexible) = self.ahead.flexible(&start, term) {
+                start = flexible;
+                changed = true;
+            }
+        }
+        if changed && !(self.stop)() {
+            let flexible = fit::fit(self.family, self.ahead, start, node.setting, STEPS.1);
+            let flexible = fit::settled(self.family, self.ahead, flexible, STEPS.1);
+            if self.comparison.compare(&best, &flexible).nats > FORM {
+                best = flexible;
+            }
+        }
+        best
+    }
+
+    /// The best set, of the smallest size that is needed.
+    fn size(&mut self, base: &Node, nodes: &[Vec<Node>]) -> Node {
+        let mut best = base.clone();
+        for (size, sets) in nodes.iter().enumerate().skip(1) {
+            let top = &sets[0];
+            let gain = self.comparison.compare(&best, top).nats;
+            let (nats, share) = self.thresholds.as_good;
+            let near = nats.max(share * gain);
+            let simplest = sets
+                .iter()
+                .take(6)
+                .filter(|set| self.comparison.compare(set, top).nats <= near)
+                .min_by_key(|set| self.parameters(set))
+                .unwrap_or(top);
+            let polished = fit::fit(self.family, self.ahead, simplest.model.clone(), simplest.setting, STEPS.2);
+            let polished = fit::settled(self.family, self.ahead, polished, STEPS.1);
+            let set = if self.comparison.compare(simplest, &polished).nats > 0.0 {
+                polished
+            } else {
+                simplest.clone()
+            };
+            let gain = self.comparison.compare(&best, &set);
+            let all = self.comparison.compare(base, &set).nats.max(1e-9);
+            let taken = gain.nats > self.thresholds.better
+                && (size == 1 || gain.nats / all > self.thresholds.share);
+            let outcome = if taken { Outcome::Added } else { Outcome::TooLittle };
+            let reason = format!("the best set of {size}");
+            let from = best.clone();
+            self.note(size, &set, &from, gain, outcome, &reason);
+            if !taken {
+                break;
+            }
+            best = set;
+        }
+        best
+    }
+
+    /// Takes out what is not needed, and says what each of the rest is worth.
+    fn prune(&mut self, base: &Node, mut best: Node, nodes: &[Vec<Node>]) -> (Node, Vec<(usize, Difference, Node)>) {
+        loop {
+            let mut costs: Vec<(usize, Difference, Node)> = Vec::new();
+            for term in self.added(base, &best) {
+                let without = self.without(base, &best, term, nodes);
+                let cost = self.comparison.compare(&without, &best);
+                costs.push((term, cost, without));
+            }
+            costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
+            let idle = costs.len() > 1
+                && costs.last().is_some_and(|cost| cost.1.nats < self.thresholds.better);
+            if !idle {
+                return (best, costs);
+            }
+            if let Some((_, cost, without)) = costs.pop() {
+                let size = costs.len();
+                let from = best.clone();
+                self.note(size, &without, &from, negative(cost), Outcome::Dropped, "as good without");
+                best = without;
+            }
+        }
+    }
+
+    /// The model without a term, refitted.
+    fn without(&self, base: &Node, node: &Node, term: usize, nodes: &[Vec<Node>]) -> Node {
+        let model = node.model.without(self.family, term);
+        if self.added(base, node).len() == 1 {
+            return base.clone();
+        }
+        let fitted = fit::fit(self.family, self.ahead, model, node.setting, STEPS.1);
+        let mut best = fit::settled(self.family, self.ahead, fitted, STEPS.1);
+        let key = self.key(&best);
+        for other in nodes.iter().flatten().filter(|other| self.key(other) == key) {
+            if self.comparison.compare(&best, other).nats > 0.0 {
+                best = other.clone();
+            }
+        }
+        best
+    }
+
+    /// The same effects in their main forms, one by one, where those are as good.
+    fn plainest(&mut self, node: Node) -> Node {
+        let mut best = node;
+        for term in best.effects(self.family) {
+            let Some(main) = self.family.form_of(term) else { continue };
+            let without = best.model.without(self.family, term);
+            let start = screen(self.family, self.ahead, &fit::evaluated(self.ahead, without, best.setting), &[main]);
+            let Some(start) = start.into_iter().next() else { continue };
+            let plain = fit::fit(self.family, self.ahead, start.start, best.setting, STEPS.2);
+            let plain = fit::settled(self.family, self.ahead, plain, STEPS.1);
+            let loss = self.comparison.compare(&plain, &best);
+            let as_good = loss.nats < self.thresholds.better;
+            let outcome = if as_good { Outcome::Added } else { Outcome::OtherShape };
+            let from = best.clone();
+            self.note(best.effects(self.family).len(), &plain, &from, negative(loss), outcome, "the plain form");
+            if as_good {
+                best = plain;
+            }
+        }
+        best
+    }
+
+    fn conclude(
+        mut self,
+        base: Node,
+        last: Node,
+        costs: Vec<(usize, Difference, Node)>,
+        nodes: &[Vec<Node>],
+        ranking: Vec<Vec<(usize, Fitted, f64)>>,
+    ) -> Found {
+        // Forms may have changed since the costs were taken.
+        let order: Vec<usize> = costs.iter().map(|(term, ..)| self.main(*term)).collect();
+        let mut added: Vec<usize> = Vec::new();
+        for main in &order {
+            added.extend(last.effects(self.family).iter().filter(|t| self.main(**t) == *main));
+        }
+        let mut rungs = vec![last.clone()];
+        for term in added.iter().skip(1).rev() {
+            let Some(above) = rungs.last() else { break };
+            let below = self.without(&base, above, *term, nodes);
+            rungs.push(below);
+        }
+        if added.is_empty() {
+            rungs.clear();
+        }
+        rungs.reverse();
+        let mut gains = Vec::new();
+        for (k, rung) in rungs.iter().enumerate() {
+            let before = if k == 0 { &base } else { &rungs[k - 1] };
+            gains.push(self.comparison.compare(before, rung));
+        }
+        let as_good = nodes
+            .get(added.len())
+            .into_iter()
+            .flatten()
+            .filter(|set| self.key(set) != self.key(&last))
+            .filter(|set| self.comparison.compare(set, &last).nats < self.thresholds.better)
+            .map(|set| set.effects(self.family))
+            .collect();
+        let stopped = (self.stop)();
+        let mut decisions = std::mem::take(&mut self.decisions);
+        let names = self.names(&last);
+        for decision in &mut decisions {
+            if decision.outcome == Outcome::AsGood {
+                let stands = decision.candidate == names;
+                decision.outcome = if stands { Outcome::Added } else { Outcome::Worse };
+            }
+        }
+        Found {
+            base,
+            rungs,
+            added,
+            gains,
+            costs: costs.into_iter().map(|(_, cost, _)| cost).collect(),
+            as_good,
+            ranking,
+            decisions,
+            untried: self.untried.into_iter().collect(),
+            stopped,
+        }
+    }
+
+    /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.
+    fn ranked(&self, from: &Node, children: &[Node], promises: &[Promise]) -> Vec<(usize, Fitted, f64)> {
+        let mut rows: Vec<(usize, Fitted, f64)> = Vec::new();
+        for promise in promises {
+            let main = self.main(promise.term);
+            if rows.iter().any(|(term, ..)| self.main(*term) == main) {
+                continue;
+            }
+            let has = |node: &&Node| node.effects(self.family).iter().any(|t| self.main(*t) == main);
+            let fitted = children.iter().find(has);
+            let row = fitted.map_or((promise.term, promise.start.clone(), promise.gain), |node| {
+                let term = node.effects(self.family).into_iter().find(|t| self.main(*t) == main);
+                let gain = self.comparison.compare(from, node).nats;
+                (term.unwrap_or(promise.term), node.model.clone(), gain)
+            });
+            rows.push(row);
+        }
+        rows.sort_by(|a, b| b.2.total_cmp(&a.2));
+        rows
+    }
+
+    /// Prediction error over what the sensors alone make.
+    pub fn budget(&self, node: &Node) -> f64 {
+        node.scale / self.ahead.budget()
+    }
+
+    /// Terms of a node that the base does not have, in the order of the model.
+    fn added(&self, base: &Node, node: &Node) -> Vec<usize> {
+        node.model.terms.iter().copied().filter(|t| !base.model.terms.contains(t)).collect()
+    }
+
+    /// The effect that a term is a form of.
+    fn main(&self, term: usize) -> usize {
+        self.family.form_of(term).unwrap_or(term)
+    }
+
+    /// What makes two sets the same: the effects, whatever their form.
+    fn key(&self, node: &Node) -> BTreeSet<usize> {
+        node.model.terms.iter().map(|term| self.main(*term)).collect()
+    }
+
+    /// Number of parameters of the plain forms of a set.
+    fn parameters(&self, node: &Node) -> usize {
+        node.model.terms.iter().map(|t| self.family.terms()[self.main(*t)].parameters.len()).sum()
+    }
+
+    fn sorted(&self, mut nodes: Vec<Node>) -> Vec<Node> {
+        // Held out, in the units of the best: the comparison with one and the same node orders all.
+        nodes.sort_by(|a, b| a.scale.total_cmp(&b.scale));
+        let Some(first) = nodes.first().cloned() else { return nodes };
+        let mut keyed: Vec<(f64, Node)> = nodes
+            .into_iter()
+            .map(|node| (self.comparison.compare(&node, &first).nats, node))
+            .collect();
+        keyed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        keyed.into_iter().map(|(_, node)| node).collect()
+    }
+
+    fn names(&self, node: &Node) -> Vec<String> {
+        node.effects(self.family).iter().map(|t| self.family.terms()[*t].name.clone()).collect()
+    }
+
+    fn note(&mut self, rung: usize, candidate: &Node, with: &Node, by: Difference, outcome: Outcome, reason: &str) {
+        self.decisions.push(Decision {
+            rung,
+            candidate: self.names(candidate),
+            compared_with: self.names(with),
+            difference: by.nats,
+            standard_error: by.error,
+            budget: self.budget(candidate),
+            outcome,
+            reason: reason.to_owned(),
+        });
+    }
+
+    /// Whether a parameter of an effect ended at a limit of its search.
+    pub fn at_limit(&self, node: &Node, term: usize) -> bool {
+        let Some(position) = node.model.terms.iter().position(|t| *t == term) else { return false };
+        let range = node.model.range(self.family, position);
+        scales::of(self.family, &node.model)[range].iter().any(scales::Moved::is_at_limit)
+    }
+}
+
+fn negative(difference: Difference) -> Difference {
+    Difference { nats: -difference.nats, ..difference }
+}

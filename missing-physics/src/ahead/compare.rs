@@ -1,0 +1,114 @@
+//! Which of two models predicts better: the one rule that everything else rests on.
+//!
+//! `compare(a, b)` is the held-out log-likelihood of `b` less that of `a`, in nats. Every piece of the recording
+//! is held out in turn; a refit without it is taken to first order. Each model stands at its own most likely
+//! process noise, both are judged in units of the smaller rms, and the difference is divided by
+//! the number of errors that say as much as an independent one.
+
+use super::fit::Normal;
+use super::node::Node;
+use super::{Ahead, scales, statistics};
+use crate::basis::solve;
+use crate::family::ModelFamily;
+
+/// Folds of interleaved pieces.
+const FOLDS: usize = 5;
+/// Length of a piece, s. Longer pieces fail for profiles along the stroke: a fold then holds all of a place.
+const PIECE: f64 = 0.5;
+/// Length of a block over which the standard error of a difference is taken, s.
+const BLOCK: f64 = 2.0;
+
+/// What a comparison says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// Held-out log-likelihood of the second model less that of the first, nats.
+    pub nats: f64,
+    /// Standard error of it, from blocks of time.
+    pub error: f64,
+}
+
+/// Held-out losses of models, with what all comparisons share.
+pub struct Comparison<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    ahead: &'a dyn Ahead,
+    /// Fold of each instant.
+    fold: Vec<usize>,
+    /// Block of each instant.
+    block: Vec<usize>,
+    blocks: usize,
+}
+
+impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
+    /// For the recording of `ahead`.
+    pub fn new(family: &'a F, ahead: &'a dyn Ahead) -> Self {
+        let first = ahead.instants().first().map_or(0.0, |i| i.0);
+        let number = |length: f64| -> Vec<usize> {
+            let mut count = 0;
+            let mut last = None;
+            let each = ahead.instants().iter().map(|(time, piece)| {
+                let key = (((time - first) / length).floor() as i64, *piece);
+                if last.is_some_and(|last| last != key) {
+                    count += 1;
+                }
+                last = Some(key);
+                count
+            });
+            each.collect()
+        };
+        let fold = number(PIECE).iter().map(|piece| piece % FOLDS).collect();
+        let block = number(BLOCK);
+        let blocks = block.last().map_or(0, |last| last + 1);
+        Self { family, ahead, fold, block, blocks }
+    }
+
+    /// How much better `b` predicts than `a`.
+    pub fn compare(&self, a: &Node, b: &Node) -> Difference {
+        let scale = a.scale.min(b.scale);
+        let (before, after) = (self.held_out(a, scale), self.held_out(b, scale));
+        let mut sums = vec![0.0; self.blocks];
+        for (k, block) in self.block.iter().enumerate() {
+            sums[*block] += (before[k] - after[k]) / b.correlation();
+        }
+        let nats: f64 = sums.iter().sum();
+        let mean = nats / self.blocks.max(1) as f64;
+        let square: f64 = sums.iter().map(|sum| (sum - mean).powi(2)).sum();
+        Difference { nats, error: square.sqrt() }
+    }
+
+    /// Loss of each error in units of `scale`, as predicted by a fit without its fold.
+    fn held_out(&self, node: &Node, scale: f64) -> Vec<f64> {
+        let jacobian = node.jacobian(self.family, self.ahead);
+        let moved = scales::of(self.family, &node.model);
+        let all: Vec<usize> = (0..moved.len()).collect();
+        let parts: Vec<Normal> = (0..FOLDS).map(|fold| self.part(node, jacobian, scale, fold)).collect();
+        let mut loss = vec![0.0; node.errors.len()];
+        for held in 0..FOLDS {
+            let mut matrix = vec![vec![0.0; moved.len()]; moved.len()];
+            let mut moment = vec![0.0; moved.len()];
+            for part in parts.iter().enumerate().filter(|(fold, _)| *fold != held).map(|(_, p)| p) {
+                for (row, other) in matrix.iter_mut().zip(&part.matrix) {
+                    crate::basis::add_scaled(row, 1.0, other);
+                }
+                crate::basis::add_scaled(&mut moment, 1.0, &part.moment);
+            }
+            for (k, row) in matrix.iter_mut().enumerate() {
+                row[k] += moved[k].prior();
+            }
+            let by = solve(&matrix, &moment, &all);
+            for (i, loss) in loss.iter_mut().enumerate().filter(|(i, _)| self.fold[*i] == held) {
+                let change: f64 = jacobian.iter().zip(&by).map(|(column, by)| column[i] * by).sum();
+                *loss = statistics::loss((node.errors[i] + change) / scale);
+            }
+        }
+        loss
+    }
+
+    /// Normal equations of one fold.
+    fn part(&self, node: &Node, jacobian: &[Vec<f64>], scale: f64, fold: usize) -> Normal {
+        let pick = |column: &[f64]| -> Vec<f64> {
+            column.iter().zip(&self.fold).filter(|(_, f)| **f == fold).map(|(v, _)| *v).collect()
+        };
+        let columns: Vec<Vec<f64>> = jacobian.iter().map(|column| pick(column)).collect();
+        Normal::of(&columns, &pick(&node.errors), scale)
+    }
+}

@@ -1,0 +1,45 @@
+//! What was compared, and what came of it: the record that a user can read.
+
+use serde::{Deserialize, Serialize};
+
+/// What came of a comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// It stands in the result.
+    Added,
+    /// It is as good as what stands in the result.
+    AsGood,
+    /// It gains too little over what it was compared with.
+    TooLittle,
+    /// Another one is better.
+    Worse,
+    /// Another shape of an effect does it instead.
+    OtherShape,
+    /// A parameter ended at a limit of its search or the data do not determine it.
+    NotIdentifiable,
+    /// It was no longer needed beside the others.
+    Dropped,
+}
+
+/// One comparison.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Decision {
+    /// Number of effects beside the base.
+    pub rung: usize,
+    /// Effects of the candidate model.
+    pub candidate: Vec<String>,
+    /// Effects of the model that it was compared with.
+    pub compared_with: Vec<String>,
+    /// Held-out log-likelihood of the candidate less that of the other, nats.
+    pub difference: f64,
+    /// Standard error of it, from blocks of 2 s.
+    pub standard_error: f64,
+    /// Prediction error of the candidate over what the sensors alone make.
+    pub budget: f64,
+    /// What came of it.
+    pub outcome: Outcome,
+    /// Why, in a few words.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub reason: String,
+}

@@ -1,0 +1,69 @@
+//! Models compared by what they predict one sample ahead.
+//!
+//! Everything here rests on the prediction errors of models, each at the process noise that suits it best, in
+//! units of what the sensors alone would leave. [`node`] is a fitted model, [`fit`] fits one, [`compare`] says
+//! which of two is better, [`screen`] which candidates are worth a fit, [`beam`] searches sets of effects.
+
+pub mod beam;
+pub mod compare;
+pub mod decision;
+pub mod fit;
+pub mod node;
+pub mod screen;
+mod scales;
+mod statistics;
+
+use crate::family::{Fitted, ModelFamily};
+
+/// A recording seen one sample ahead.
+pub trait Ahead: Sync {
+    /// Number of settings of the process noise.
+    fn settings(&self) -> usize;
+
+    /// Standard deviation of the prediction error that a true model would have at a setting.
+    fn expected(&self, setting: usize) -> f64;
+
+    /// Standard deviation of the prediction error that the sensors alone make.
+    fn budget(&self) -> f64;
+
+    /// Prediction errors of models of the same terms, each at its own setting: one value per instant that
+    /// counts.
+    fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>>;
+
+    /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
+    fn instants(&self) -> &[(f64, usize)];
+
+    /// Ways to begin with a term beside a model.
+    fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;
+
+    /// The same model with a term in a more flexible form, to begin with; nothing where there is none.
+    fn flexible(&self, _model: &Fitted, _term: usize) -> Option<Fitted> {
+        None
+    }
+}
+
+/// A place to begin with a term.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The model with the term.
+    pub model: Fitted,
+    /// Indices of the values that are free and the size that each is tried at (they are 0 in the model); empty
+    /// where only the whole change can be looked at.
+    pub amplitudes: Vec<(usize, f64)>,
+}
+
+/// The trials that a term's shapes and amplitudes make.
+pub fn trials<F: ModelFamily + ?Sized>(family: &F, model: &Fitted, term: usize) -> Vec<Trial> {
+    let about = &family.terms()[term];
+    let first = model.values.len();
+    let amplitude = |k: &usize| about.parameters[*k].role == crate::family::Role::Amplitude;
+    let free: Vec<usize> = (0..about.parameters.len()).filter(amplitude).collect();
+    family
+        .shapes(term)
+        .iter()
+        .map(|shape| Trial {
+            model: model.with(term, &crate::shapes::assemble(about, shape, &[])),
+            amplitudes: free.iter().map(|k| (first + k, about.parameters[*k].start)).collect(),
+        })
+        .collect()
+}

@@ -1,0 +1,72 @@
+//! A fitted model with its prediction errors.
+
+use std::sync::OnceLock;
+
+use super::{Ahead, scales, statistics};
+use crate::family::{Fitted, ModelFamily};
+
+/// A cut for robust squares: those beyond this many times their mean count as that.
+pub const CUT: f64 = 16.0;
+
+/// A model, its setting of the process noise, and what it leaves.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Terms and values.
+    pub model: Fitted,
+    /// Setting of the process noise.
+    pub setting: usize,
+    /// Prediction errors.
+    pub errors: Vec<f64>,
+    /// Robust rms of the errors.
+    pub scale: f64,
+    jacobian: OnceLock<Vec<Vec<f64>>>,
+    correlation: OnceLock<f64>,
+}
+
+impl Node {
+    /// A model with its errors.
+    pub fn new(model: Fitted, setting: usize, errors: Vec<f64>) -> Self {
+        let scale = statistics::rms(&errors, CUT).max(f64::MIN_POSITIVE);
+        let (jacobian, correlation) = (OnceLock::new(), OnceLock::new());
+        Self { model, setting, errors, scale, jacobian, correlation }
+    }
+
+    /// Derivatives of the errors with respect to the parameters on their scales.
+    pub fn jacobian<F: ModelFamily + ?Sized>(&self, family: &F, ahead: &dyn Ahead) -> &[Vec<f64>] {
+        self.jacobian.get_or_init(|| {
+            let moved = scales::of(family, &self.model);
+            let trials: Vec<(Fitted, usize)> = (0..moved.len())
+                .map(|k| {
+                    let mut model = self.model.clone();
+                    model.values[k] = moved[k].by(moved[k].difference());
+                    (model, self.setting)
+                })
+                .collect();
+            let mut columns = ahead.errors(&trials);
+            for (column, moved) in columns.iter_mut().zip(&moved) {
+                let step = moved.difference();
+                for (new, old) in column.iter_mut().zip(&self.errors) {
+                    *new = (*new - old) / step;
+                }
+            }
+            columns
+        })
+    }
+
+    /// How many errors say as much as an independent one.
+    pub fn correlation(&self) -> f64 {
+        *self.correlation.get_or_init(|| statistics::correlation(&self.errors))
+    }
+
+    /// The scale at which errors are weighed: at least what is expected, and what most or all of them are.
+    pub fn weighing(&self, expected: f64) -> f64 {
+        expected
+            .max(statistics::spread(&self.errors))
+            .max(0.4 * statistics::rms(&self.errors, f64::INFINITY))
+    }
+
+    /// Terms without those that every model has.
+    pub fn effects<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<usize> {
+        self.model.terms.iter().copied().filter(|t| !family.terms()[*t].always).collect()
+    }
+}

@@ -1,0 +1,142 @@
+//! Which candidates are worth a fit: the gain in likelihood to first order, the model's own parameters free.
+
+use super::node::Node;
+use super::{Ahead, Trial, statistics};
+use crate::basis::{Basis, constrained, dot, gram, weighed};
+use crate::family::{Fitted, ModelFamily};
+
+/// A change is cut off at this many scales: far from the model the first order says nothing.
+const CUT: f64 = 60.0;
+/// Largest multiple of a whole change, and of the size at which an amplitude was tried.
+const MOST: (f64, f64) = (1.5, 60.0);
+/// An amplitude that the first order puts at 0 starts at this share of the size that it was tried at.
+const LEAST: f64 = 0.03;
+
+/// A term and how much it promises.
+#[derive(Clone, Debug)]
+pub struct Promise {
+    /// The term.
+    pub term: usize,
+    /// Gain, nats.
+    pub gain: f64,
+    /// Where to begin.
+    pub start: Fitted,
+}
+
+/// The best trial of every candidate, the most promising first. `keep` trials of a term that lie apart are kept
+/// where the family asks for it.
+pub fn screen<F: ModelFamily + ?Sized>(
+    family: &F,
+    ahead: &dyn Ahead,
+    node: &Node,
+    candidates: &[usize],
+) -> Vec<Promise> {
+    let scale = node.weighing(ahead.expected(node.setting));
+    let weight: Vec<f64> =
+        node.errors.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
+    let own: Vec<Vec<f64>> =
+        node.jacobian(family, ahead).iter().map(|column| weighed(column, &weight)).collect();
+    let own = Basis::of(&own);
+    let mut left = weighed(&node.errors, &weight);
+    own.project_out(&mut left);
+    let screening = Screening { node, ahead, scale, weight, own, left };
+    let mut promises: Vec<Promise> = candidates
+        .iter()
+        .filter_map(|&term| {
+            let trials = ahead.trials(&node.model, term);
+            screening.best(family, term, &trials)
+        })
+        .collect();
+    promises.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    promises
+}
+
+struct Screening<'a> {
+    node: &'a Node,
+    ahead: &'a dyn Ahead,
+    scale: f64,
+    weight: Vec<f64>,
+    own: Basis,
+    left: Vec<f64>,
+}
+
+impl Screening<'_> {
+    fn best<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        term: usize,
+        trials: &[Trial],
+    ) -> Option<Promise> {
+        let probes: Vec<(Fitted, usize)> =
+            trials.iter().flat_map(probes).map(|model| (model, self.node.setting)).collect();
+        let mut errors = self.ahead.errors(&probes).into_iter();
+        let mut best: Option<Promise> = None;
+        for trial in trials {
+            let count = trial.amplitudes.len().max(1);
+            let columns: Vec<Vec<f64>> =
+                errors.by_ref().take(count).map(|e| self.change(&e)).collect();
+            let (gain, by) = self.gain(family, trial, &columns);
+            if best.as_ref().is_none_or(|best| gain > best.gain) {
+                best = Some(Promise { term, gain, start: started(trial, &by) });
+            }
+        }
+        best
+    }
+
+    /// What a trial changes, weighed and freed of what the model's own parameters do.
+    fn change(&self, errors: &[f64]) -> Vec<f64> {
+        let cut = CUT * self.scale;
+        let change = errors.iter().zip(&self.node.errors).map(|(e, old)| (e - old).clamp(-cut, cut));
+        let mut column: Vec<f64> = change.zip(&self.weight).map(|(c, w)| c * w).collect();
+        self.own.project_out(&mut column);
+        column
+    }
+
+    /// Gain and the multiples of the trial's sizes that reach it.
+    fn gain<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        trial: &Trial,
+        columns: &[Vec<f64>],
+    ) -> (f64, Vec<f64>) {
+        let parameters: Vec<f64> =
+            trial.model.parameters(family).map(|(_, p)| p.lower).collect();
+        let positive: Vec<bool> = if trial.amplitudes.is_empty() {
+            vec![true]
+        } else {
+            trial.amplitudes.iter().map(|(k, _)| parameters[*k] >= 0.0).collect()
+        };
+        let moment: Vec<f64> = columns.iter().map(|c| -dot(c, &self.left)).collect();
+        let matrix = gram(columns);
+        let mut by = constrained(&matrix, &moment, &positive);
+        let most = if trial.amplitudes.is_empty() { MOST.0 } else { MOST.1 };
+        by.iter_mut().for_each(|by| *by = by.clamp(-most, most));
+        let linear: f64 = by.iter().zip(&moment).map(|(b, m)| b * m).sum();
+        let square: f64 = by.iter().zip(&matrix).map(|(b, row)| b * dot(row, &by)).sum();
+        // One nat for each free amplitude: what noise alone gives is half of that.
+        (linear - 0.5 * square - by.len() as f64, by)
+    }
+}
+
+/// The models that a trial is looked at with.
+fn probes(trial: &Trial) -> Vec<Fitted> {
+    if trial.amplitudes.is_empty() {
+        return vec![trial.model.clone()];
+    }
+    let with = |(k, size): &(usize, f64)| {
+        let mut model = trial.model.clone();
+        model.values[*k] = *size;
+        model
+    };
+    trial.amplitudes.iter().map(with).collect()
+}
+
+/// The trial with the amplitudes that the first order finds.
+fn started(trial: &Trial, by: &[f64]) -> Fitted {
+    let mut model = trial.model.clone();
+    for ((k, size), by) in trial.amplitudes.iter().zip(by) {
+        let by = if *by == 0.0 { LEAST } else { *by };
+        model.values[*k] = by * size;
+    }
+    model
+}
