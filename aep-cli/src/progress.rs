@@ -78,6 +78,9 @@ impl Observer for Progress {
             Event::Dropped { effect } => {
                 self.line.println(format!("- {effect}: no longer needed"));
             }
+            Event::Compared { rung, effects, nats } => {
+                self.say(format!("sets of {rung}: {} ({nats:+.0} nats)", effects.join(" + ")));
+            }
             Event::Finishing => self.say("looking at what is left"),
             _ => {}
         }

@@ -126,6 +126,8 @@ pub fn rung(family: &FrictionFamily, fit: &Fit, added: Option<String>) -> Rung {
         error: ladder::errors(family, fit, &split),
         p_value: None,
         metrics: Some(SplitMetrics::of(&fit.residual, family.target(), &split)),
+        likelihood_gain: None,
+        budget: None,
     }
 }
 
@@ -168,6 +170,9 @@ pub fn comparison(
         generic_term: None,
         noise_floor,
         detection_limits: std::collections::BTreeMap::new(),
+        decisions: Vec::new(),
+        budget: None,
+        untried: Vec::new(),
         seed,
         wall_s: 0.0,
         notes: Vec::new(),

@@ -95,6 +95,7 @@ pub fn verdict(discovery: &Discovery) -> &'static str {
         Verdict::NothingMissing => "Nothing is missing",
         Verdict::Unexplained => "Unexplained structure",
         Verdict::Ambiguous => "Found, but ambiguous",
+        Verdict::Stopped => "Stopped before anything was found",
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
+use crate::ahead::{self, beam::Thresholds};
 use crate::climb::Search;
 use crate::family::{Fitted, ModelFamily};
 use crate::fit::{self, Fit};
@@ -23,6 +24,8 @@ pub struct Settings<'a> {
     pub least_gain: f64,
     /// Most effects that are added.
     pub most: usize,
+    /// Numbers that steer the search where the family predicts one sample ahead.
+    pub thresholds: Thresholds,
     /// Set from outside to stop; what has been found is reported.
     pub stop: Option<&'a AtomicBool>,
     /// Time after which no new rung is begun.
@@ -38,6 +41,7 @@ impl Default for Settings<'_> {
             alpha: 0.05,
             least_gain: 0.02,
             most: 8,
+            thresholds: Thresholds::default(),
             stop: None,
             time_limit: None,
         }
@@ -73,6 +77,15 @@ pub enum Event<'a> {
         gain: f64,
         /// Its p-value.
         p_value: f64,
+    },
+    /// A set of effects has been fitted and compared.
+    Compared {
+        /// Number of effects beside the base.
+        rung: usize,
+        /// Their names.
+        effects: &'a [String],
+        /// Held-out log-likelihood gained, nats.
+        nats: f64,
     },
     /// An effect was added.
     Added {
@@ -158,6 +171,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
 ) -> Result<Discovery, DiscoverError> {
     let base = terms(family, &settings.base)?;
     let excluded = terms(family, &settings.exclude)?;
+    if let Some(one_ahead) = family.ahead() {
+        return Ok(ahead::discover(family, one_ahead, settings, (&base, &excluded), observer));
+    }
     Ok(Search::new(family, settings, &base, excluded, observer).run())
 }
 

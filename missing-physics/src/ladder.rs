@@ -133,6 +133,7 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
             gain: candidate.gain,
             p_value: candidate.p_value,
             size: self.family.describe(candidate.term, &candidate.values),
+            nats: None,
         });
         self.ranking.push(row.collect());
     }
@@ -217,6 +218,8 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
             error: errors(self.family, fit, &self.split),
             p_value,
             metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), &self.split)),
+            likelihood_gain: None,
+            budget: None,
         }
     }
 }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::ahead::decision::Decision;
 use crate::confirm::Confirmed;
 use crate::diagnosis::Diagnosis;
 use crate::metrics::SplitMetrics;
@@ -24,6 +25,21 @@ pub enum Verdict {
     Unexplained,
     /// Several candidates explain it equally well on this data.
     Ambiguous,
+    /// The search was cut short before anything could be said.
+    Stopped,
+}
+
+/// What the sensors make of the prediction error, and what the models leave.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Budget {
+    /// Prediction error that the sensors alone make: a standard deviation, m or rad.
+    pub expected: f64,
+    /// Prediction error of the base model, in multiples of it.
+    pub base: f64,
+    /// Prediction error of the last model, in multiples of it.
+    pub last: f64,
+    /// Whether the last model leaves no more than sensors make.
+    pub complete: bool,
 }
 
 /// A parameter with its interval.
@@ -67,6 +83,12 @@ pub struct Rung {
     /// The error of the compared quantity in its usual measures.
     #[serde(default)]
     pub metrics: Option<SplitMetrics>,
+    /// Held-out log-likelihood of the prediction errors over that of the rung below, nats.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub likelihood_gain: Option<f64>,
+    /// Prediction error in multiples of what the sensors alone make.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<f64>,
 }
 
 /// How well a candidate would explain what the model of a rung leaves.
@@ -81,6 +103,9 @@ pub struct Candidate {
     /// Size with unit, in words: "8.2 N at 1.1 mm/s".
     #[serde(default)]
     pub size: String,
+    /// Held-out log-likelihood that it gains, nats; to first order where it was not fitted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nats: Option<f64>,
 }
 
 /// Where the model fails: one regime or coordinate.
@@ -182,6 +207,15 @@ pub struct Discovery {
     /// Size of each effect that would have been seen, in words, by effect.
     #[serde(default)]
     pub detection_limits: BTreeMap<String, String>,
+    /// Every comparison of two models, and what came of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub decisions: Vec<Decision>,
+    /// What the sensors make of the prediction error, and what is left.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub budget: Option<Budget>,
+    /// Effects that were not tried because time ran out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub untried: Vec<String>,
     /// Seed of every random choice.
     pub seed: u64,
     /// Time taken, s.

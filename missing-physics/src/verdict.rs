@@ -147,7 +147,7 @@ pub fn report<F: ModelFamily + ?Sized>(
             relative(0),
             quantity.name
         ),
-        Verdict::EffectsFound | Verdict::Ambiguous => format!(
+        Verdict::EffectsFound | Verdict::Ambiguous | Verdict::Stopped => format!(
             "Missing: {}. With it the held-out error falls from {:.2} % to {:.2} % of the {}.",
             added.join(", "),
             relative(0),
@@ -207,6 +207,9 @@ pub fn report<F: ModelFamily + ?Sized>(
         generic_term,
         noise_floor,
         detection_limits: limits(family, &split, evidence),
+        decisions: Vec::new(),
+        budget: None,
+        untried: Vec::new(),
         seed: 0,
         wall_s: 0.0,
         notes,

@@ -25,7 +25,7 @@ const BAR: usize = 10;
 pub fn verdict(discovery: &Discovery) -> String {
     let colour = match discovery.verdict {
         Verdict::EffectsFound | Verdict::NothingMissing => AnsiColor::Green,
-        Verdict::Unexplained | Verdict::Ambiguous => AnsiColor::Yellow,
+        Verdict::Unexplained | Verdict::Ambiguous | Verdict::Stopped => AnsiColor::Yellow,
     };
     let mut title = words::verdict(discovery).to_uppercase();
     if !discovery.added.is_empty() {

@@ -11,7 +11,7 @@ use crate::words;
 pub(super) fn head(discovery: &Discovery, source: &Source) -> String {
     let tone = match discovery.verdict {
         Verdict::EffectsFound | Verdict::NothingMissing => "good",
-        Verdict::Unexplained | Verdict::Ambiguous => "doubt",
+        Verdict::Unexplained | Verdict::Ambiguous | Verdict::Stopped => "doubt",
     };
     format!(
         "<header class={tone}><p class=file>{}</p><h1>{}</h1><p class=summary>{}</p>{}</header>\n",

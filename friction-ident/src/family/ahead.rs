@@ -1,11 +1,12 @@
 //! The family one sample ahead: its terms as plants, the predictor's errors as the engine wants them.
 
-use missing_physics::ahead::{Ahead, Trial, trials};
-use missing_physics::{Fitted, ModelFamily, Recording};
+use aep_core::Scale;
+use missing_physics::ahead::{Ahead, Trial};
+use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
 use crate::model::Model;
-use crate::predictor::Predictor;
+use crate::predictor::{Predictor, Wave};
 
 /// The predictor of a recording with the instants that it counts.
 #[derive(Clone, Debug)]
@@ -31,6 +32,30 @@ impl FrictionFamily {
             Some(ahead) => ahead,
             None => unreachable!("asked only where there is one"),
         }
+    }
+
+    /// Shapes of a term to begin with: a fit finds the rest of the way.
+    fn few_shapes(&self, term: usize) -> Vec<Vec<f64>> {
+        let about = &self.terms[term];
+        if ["ripple", "encoder"].contains(&about.name.as_str()) {
+            // A fit moves a period by more than the half of a line that lies between two of these.
+            return self.shapes(term).into_iter().step_by(2).collect();
+        }
+        let shapes: Vec<&Parameter> =
+            about.parameters.iter().filter(|p| p.role == Role::Shape).collect();
+        let counts: &[usize] = match shapes.len() {
+            1 => &[12],
+            2 if about.name == "flexible-coupling" => &[12, 1],
+            2 => &[6, 3],
+            _ => &[5, 3, 2],
+        };
+        shapes.iter().enumerate().fold(vec![Vec::new()], |points, (k, parameter)| {
+            let line = inner(parameter, counts.get(k).copied().unwrap_or(1));
+            let each = |point: &Vec<f64>| {
+                line.iter().map(|value| [point.as_slice(), &[*value]].concat()).collect::<Vec<_>>()
+            };
+            points.iter().flat_map(each).collect()
+        })
     }
 
     fn flexible_form(&self, term: usize) -> Option<usize> {
@@ -74,7 +99,28 @@ impl Ahead for FrictionFamily {
     }
 
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
-        trials(self, model, term)
+        let about = &self.terms[term];
+        let first = model.values.len();
+        let amplitude = |k: &usize| about.parameters[*k].role == Role::Amplitude;
+        let free: Vec<usize> = (0..about.parameters.len()).filter(amplitude).collect();
+        let trial = |shape: &Vec<f64>| Trial {
+            model: model.with(term, &missing_physics::shapes::assemble(about, shape, &[])),
+            amplitudes: free.iter().map(|k| (first + k, about.parameters[*k].start)).collect(),
+        };
+        self.few_shapes(term).iter().map(trial).collect()
+    }
+
+    fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Vec<Vec<Vec<f64>>>> {
+        let name = self.terms[term].name.as_str();
+        if !["ripple", "encoder"].contains(&name) {
+            return None;
+        }
+        let wave = if name == "ripple" { Wave::Force } else { Wave::Sensor };
+        let period = |trial: &Trial| trial.model.values.last().copied().unwrap_or(1.0);
+        let periods: Vec<f64> = trials.iter().map(period).collect();
+        // The fundamental chooses the period; harmonics follow when it is looked at as it is.
+        let responses = self.one_ahead().predictor.responses(setting, wave, &periods);
+        Some(responses.into_iter().map(Vec::from).collect())
     }
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
@@ -82,4 +128,18 @@ impl Ahead for FrictionFamily {
         let values: Vec<f64> = self.terms[to].parameters.iter().map(|p| p.start).collect();
         Some(model.without(self, term).with(to, &values))
     }
+}
+
+/// `count` values within the limits, evenly on the parameter's scale; one alone is where a search starts.
+fn inner(parameter: &Parameter, count: usize) -> Vec<f64> {
+    if count == 1 {
+        return vec![parameter.start];
+    }
+    let (lower, upper) = (parameter.lower, parameter.upper);
+    let part = |k: usize| (k as f64 + 0.5) / count as f64;
+    let value = |k: usize| match parameter.scale {
+        Scale::Log => lower * (upper / lower).powf(part(k)),
+        Scale::Linear => lower + (upper - lower) * part(k),
+    };
+    (0..count).map(value).collect()
 }

@@ -58,11 +58,32 @@ pub(super) fn gains(
     Gain { position, velocity, relative, expected }
 }
 
-impl Covariance {
-    fn predicted(self, t: f64, (mass, damping): (f64, f64), force: f64) -> Self {
+/// How a mass with damping moves over an interval, and what a force that is held over it adds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    /// Share of the velocity that is left.
+    pub decay: f64,
+    /// Way per velocity, s.
+    pub way: f64,
+    /// Way per force, m/N or rad/(N m).
+    pub moved: f64,
+    /// Velocity per force.
+    pub gained: f64,
+}
+
+impl Motion {
+    /// Over `t` s of a plant of `(mass, damping)`.
+    pub fn over(t: f64, (mass, damping): (f64, f64)) -> Self {
         let decay = (-damping * t / mass).exp();
         let way = if damping * t < 1e-9 * mass { t } else { mass / damping * (1.0 - decay) };
-        let (gx, gv) = (force * t * t / (2.0 * mass), force * t / mass);
+        Self { decay, way, moved: t * t / (2.0 * mass), gained: t / mass }
+    }
+}
+
+impl Covariance {
+    fn predicted(self, t: f64, plant: (f64, f64), force: f64) -> Self {
+        let Motion { decay, way, moved, gained } = Motion::over(t, plant);
+        let (gx, gv) = (force * moved, force * gained);
         Self {
             xx: self.xx + 2.0 * way * self.xv + way * way * self.vv + gx * gx,
             xv: decay * (self.xv + way * self.vv) + gx * gv,

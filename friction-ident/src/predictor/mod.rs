@@ -12,6 +12,7 @@
 
 mod gain;
 mod noise;
+mod response;
 
 use std::ops::Range;
 
@@ -19,6 +20,7 @@ use missing_physics::{Hold, Recording};
 use rayon::prelude::*;
 
 pub use noise::Noise;
+pub use response::Wave;
 
 use crate::effects::Slot;
 use crate::model::Model;
@@ -59,6 +61,8 @@ pub struct Predictor {
     /// Process noise of the ladder, N.
     ladder: Vec<f64>,
     gains: Vec<Gain>,
+    /// Mass and damping that the gains are made for.
+    plant: (f64, f64),
     fed_back: f64,
     rest_speed: f64,
 }
@@ -80,6 +84,7 @@ impl Predictor {
             counted: Vec::new(),
             ladder,
             gains: Vec::new(),
+            plant: (mass, damping),
             fed_back: FED_BACK * (stroke.1 - stroke.0),
             rest_speed: REST * noise.position / recording.interval().max(f64::MIN_POSITIVE),
             position,
@@ -101,6 +106,7 @@ impl Predictor {
 
     /// Makes the gains for a plant of `mass` and `damping`.
     pub fn tune(&mut self, mass: f64, damping: f64) {
+        self.plant = (mass, damping);
         let each = |process: &f64| {
             let force = process.hypot(self.noise.force);
             gains(&self.time, &self.segments, &self.counted, (mass, damping), (self.noise.position, force))

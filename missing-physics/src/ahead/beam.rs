@@ -5,13 +5,13 @@
 //! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
 
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 use super::compare::{Comparison, Difference};
 use super::decision::{Decision, Outcome};
 use super::node::Node;
-use super::screen::{Promise, screen};
-use super::{Ahead, fit, scales};
+use super::screen::{Promise, Screened, screen};
+use super::{Ahead, chance, fit, scales};
+use crate::discover::{Event, Observer};
 use crate::family::{Fitted, ModelFamily};
 
 /// Numbers that steer a search. Each stands in docs/decisions.md with what half and one and a half times of it do.
@@ -61,14 +61,43 @@ pub struct Found {
     pub costs: Vec<Difference>,
     /// Sets of terms that predict as well as the ones found.
     pub as_good: Vec<Vec<usize>>,
-    /// Candidates of each rung with what they gain, the best first.
-    pub ranking: Vec<Vec<(usize, Fitted, f64)>>,
+    /// Candidates beside the best set of each size.
+    pub ranking: Vec<Ranked>,
+    /// Chance of as large a first-order gain, for each rung.
+    pub p_values: Vec<f64>,
+    /// The candidates beside the last model, to first order.
+    pub last_screening: Vec<Promise>,
+    /// Whether the last model leaves no more than the sensors make.
+    pub complete: bool,
+    /// Where what is left lies, in words, the largest first.
+    pub places: Vec<String>,
+    /// What a user should know besides.
+    pub notes: Vec<String>,
     /// Every comparison.
     pub decisions: Vec<Decision>,
     /// Terms that were not tried because time ran out.
     pub untried: Vec<usize>,
     /// Whether the search was cut short.
     pub stopped: bool,
+}
+
+impl Found {
+    /// Whether a term, in whatever form, is among `terms`.
+    pub fn is_in<F: ModelFamily + ?Sized>(&self, terms: &[usize], term: usize, family: &F) -> bool {
+        let main = |t: usize| family.form_of(t).unwrap_or(t);
+        terms.iter().any(|other| main(*other) == main(term))
+    }
+}
+
+/// Candidates beside one model.
+#[derive(Clone, Debug)]
+pub struct Ranked {
+    /// Term, the model with it, what it gains (nats), the best first.
+    pub rows: Vec<(usize, Fitted, f64)>,
+    /// What any candidate gains by chance, to first order.
+    pub chance: Vec<f64>,
+    /// Number of errors that say as much as independent ones.
+    pub points: f64,
 }
 
 /// A running search.
@@ -81,8 +110,8 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     candidates: Vec<usize>,
     decisions: Vec<Decision>,
     stop: &'a dyn Fn() -> bool,
+    observer: &'a mut dyn Observer,
     untried: BTreeSet<usize>,
-    pub(super) started: Instant,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
@@ -93,6 +122,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         thresholds: Thresholds,
         candidates: Vec<usize>,
         stop: &'a dyn Fn() -> bool,
+        observer: &'a mut dyn Observer,
     ) -> Self {
         Self {
             family,
@@ -102,8 +132,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             candidates,
             decisions: Vec::new(),
             stop,
+            observer,
             untried: BTreeSet::new(),
-            started: Instant::now(),
         }
     }
 
@@ -122,8 +152,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         fit::settled(self.family, self.ahead, node, STEPS.0)
     }
 
-    /// Searches from a base model.
-    pub fn run(mut self, base: Node) -> Found {
+    /// Searches from a base model for at most so many effects.
+    pub fn run(mut self, base: Node, most: usize) -> Found {
+        self.thresholds.most = self.thresholds.most.min(most);
         let (nodes, ranking) = self.climb(&base);
         let best = self.size(&base, &nodes);
         let (last, costs) = self.prune(&base, best, &nodes);
@@ -132,23 +163,25 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// Sets of effects by their number, the best first.
-    #[expect(clippy::type_complexity, reason = "the ranking of each rung")]
-    fn climb(&mut self, base: &Node) -> (Vec<Vec<Node>>, Vec<Vec<(usize, Fitted, f64)>>) {
+    fn climb(&mut self, base: &Node) -> (Vec<Vec<Node>>, Vec<Ranked>) {
         let mut nodes = vec![vec![base.clone()]];
         let mut ranking = Vec::new();
         let mut beam = vec![base.clone()];
-        for size in 1..=self.thresholds.most {
+        // Without any effect to add the candidates are still looked at.
+        for size in 1..=self.thresholds.most.max(1) {
             let mut next: Vec<(Node, Difference)> = Vec::new();
             for (place, from) in beam.iter().enumerate() {
-                let (children, promises) = self.expand(from, size);
+                let (children, screened) = self.expand(from, size, place == 0);
                 if place == 0 {
-                    ranking.push(self.ranked(from, &children, &promises));
+                    ranking.push(self.ranked(from, &children, screened));
                 }
                 for child in children {
                     let gain = self.comparison.compare(from, &child);
                     let outcome =
                         if gain.nats > self.thresholds.better { Outcome::AsGood } else { Outcome::TooLittle };
                     self.note(size, &child, from, gain, outcome, "");
+                    let effects = self.names(&child);
+                    self.observer.event(&Event::Compared { rung: size, effects: &effects, nats: gain.nats });
                     if gain.nats <= self.thresholds.better {
                         continue;
                     }
@@ -164,6 +197,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 if (self.stop)() {
                     break;
                 }
+            }
+            if self.thresholds.most == 0 {
+                break;
             }
             let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
             if ranked.is_empty() {
@@ -181,7 +217,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
-    fn expand(&mut self, from: &Node, size: usize) -> (Vec<Node>, Vec<Promise>) {
+    fn expand(&mut self, from: &Node, size: usize, first: bool) -> (Vec<Node>, Screened) {
         let open: Vec<usize> = self
             .candidates
             .iter()
@@ -190,14 +226,15 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .collect();
         if (self.stop)() {
             self.untried.extend(open);
-            return (Vec::new(), Vec::new());
+            return (Vec::new(), Screened::default());
         }
-        let promises = screen(self.family, self.ahead, from, &open);
+        self.observer.event(&Event::Screening { rung: size, candidates: open.len() });
+        let screened = screen(self.family, self.ahead, from, &open, first);
         let least = if size == 1 { PROMISING.0 } else { PROMISING.1 };
         // Two forms of an effect at most, so that one effect does not take all places.
         let mut mains: Vec<usize> = Vec::new();
         let mut fitted: Vec<Node> = Vec::new();
-        for promise in promises.iter().filter(|promise| promise.gain > least) {
+        for promise in screened.promises.iter().filter(|promise| promise.gain > least) {
             let main = self.main(promise.term);
             let forms = mains.iter().filter(|other| **other == main).count();
             let distinct = mains.iter().collect::<BTreeSet<_>>().len();
@@ -223,7 +260,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let shaped = settled.into_iter().enumerate().map(|(place, node)| {
             if place <= self.thresholds.beam { self.shaped(node) } else { node }
         });
-        (shaped.collect(), promises)
+        (shaped.collect(), screened)
     }
 
     /// The node, or the same with effects in their flexible forms where that is clearly better.
@@ -331,8 +368,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         for term in best.effects(self.family) {
             let Some(main) = self.family.form_of(term) else { continue };
             let without = best.model.without(self.family, term);
-            let start = screen(self.family, self.ahead, &fit::evaluated(self.ahead, without, best.setting), &[main]);
-            let Some(start) = start.into_iter().next() else { continue };
+            let start = screen(self.family, self.ahead, &fit::evaluated(self.ahead, without, best.setting), &[main], false);
+            let Some(start) = start.promises.into_iter().next() else { continue };
             let plain = fit::fit(self.family, self.ahead, start.start, best.setting, STEPS.2);
             let plain = fit::settled(self.family, self.ahead, plain, STEPS.1);
             let loss = self.comparison.compare(&plain, &best);
@@ -353,7 +390,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         last: Node,
         costs: Vec<(usize, Difference, Node)>,
         nodes: &[Vec<Node>],
-        ranking: Vec<Vec<(usize, Fitted, f64)>>,
+        ranking: Vec<Ranked>,
     ) -> Found {
         // Forms may have changed since the costs were taken.
         let order: Vec<usize> = costs.iter().map(|(term, ..)| self.main(*term)).collect();
@@ -385,6 +422,19 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .map(|set| set.effects(self.family))
             .collect();
         let stopped = (self.stop)();
+        let top = rungs.last().unwrap_or(&base).clone();
+        let open = self.candidates.iter().copied().filter(|&t| self.family.joins(&top.model, t));
+        let open: Vec<usize> = open.collect();
+        let last_screening = if stopped {
+            Vec::new()
+        } else {
+            screen(self.family, self.ahead, &top, &open, false).promises
+        };
+        let of = |gain: &Difference, k: usize| {
+            ranking.get(k).map_or(1.0, |ranked| chance::p_value(gain.nats, &ranked.chance))
+        };
+        let p_values = gains.iter().enumerate().map(|(k, gain)| of(gain, k)).collect();
+        let complete = self.budget(&top) <= self.thresholds.complete;
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(&last);
         for decision in &mut decisions {
@@ -401,6 +451,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             costs: costs.into_iter().map(|(_, cost, _)| cost).collect(),
             as_good,
             ranking,
+            p_values,
+            last_screening,
+            complete,
+            places: Vec::new(),
+            notes: Vec::new(),
             decisions,
             untried: self.untried.into_iter().collect(),
             stopped,
@@ -408,24 +463,24 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.
-    fn ranked(&self, from: &Node, children: &[Node], promises: &[Promise]) -> Vec<(usize, Fitted, f64)> {
+    fn ranked(&self, from: &Node, children: &[Node], screened: Screened) -> Ranked {
         let mut rows: Vec<(usize, Fitted, f64)> = Vec::new();
-        for promise in promises {
+        for promise in screened.promises {
             let main = self.main(promise.term);
             if rows.iter().any(|(term, ..)| self.main(*term) == main) {
                 continue;
             }
             let has = |node: &&Node| node.effects(self.family).iter().any(|t| self.main(*t) == main);
             let fitted = children.iter().find(has);
-            let row = fitted.map_or((promise.term, promise.start.clone(), promise.gain), |node| {
+            let row = fitted.map(|node| {
                 let term = node.effects(self.family).into_iter().find(|t| self.main(*t) == main);
                 let gain = self.comparison.compare(from, node).nats;
                 (term.unwrap_or(promise.term), node.model.clone(), gain)
             });
-            rows.push(row);
+            rows.push(row.unwrap_or((promise.term, promise.start, promise.gain)));
         }
         rows.sort_by(|a, b| b.2.total_cmp(&a.2));
-        rows
+        Ranked { rows, chance: screened.chance, points: from.errors.len() as f64 / from.correlation() }
     }
 
     /// Prediction error over what the sensors alone make.

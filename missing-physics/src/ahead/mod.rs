@@ -5,13 +5,17 @@
 //! which of two is better, [`screen`] which candidates are worth a fit, [`beam`] searches sets of effects.
 
 pub mod beam;
+pub mod chance;
 pub mod compare;
 pub mod decision;
 pub mod fit;
 pub mod node;
-pub mod screen;
+mod report;
 mod scales;
+pub mod screen;
 mod statistics;
+
+pub use report::discover;
 
 use crate::family::{Fitted, ModelFamily};
 
@@ -35,6 +39,12 @@ pub trait Ahead: Sync {
 
     /// Ways to begin with a term beside a model.
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;
+
+    /// Changes of the errors by each amplitude of each of `trials`, to first order, where the family has a way
+    /// that is much cheaper than errors of the trials: the few best of them are then looked at as they are.
+    fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Vec<Vec<Vec<f64>>>> {
+        None
+    }
 
     /// The same model with a term in a more flexible form, to begin with; nothing where there is none.
     fn flexible(&self, _model: &Fitted, _term: usize) -> Option<Fitted> {

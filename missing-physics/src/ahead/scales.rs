@@ -38,6 +38,11 @@ impl Moved {
         Self { parameter: parameter.clone(), value, scale: scale.max(f64::MIN_POSITIVE) }
     }
 
+    /// One unit of the fit; 1 for a logarithm's own.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
     fn is_log(&self) -> bool {
         self.parameter.scale == Scale::Log
     }

@@ -1,9 +1,11 @@
 //! Which candidates are worth a fit: the gain in likelihood to first order, the model's own parameters free.
 
 use super::node::Node;
+use super::chance::{self, Changed};
 use super::{Ahead, Trial, statistics};
 use crate::basis::{Basis, constrained, dot, gram, weighed};
 use crate::family::{Fitted, ModelFamily};
+use rayon::prelude::*;
 
 /// A change is cut off at this many scales: far from the model the first order says nothing.
 const CUT: f64 = 60.0;
@@ -11,6 +13,9 @@ const CUT: f64 = 60.0;
 const MOST: (f64, f64) = (1.5, 60.0);
 /// An amplitude that the first order puts at 0 starts at this share of the size that it was tried at.
 const LEAST: f64 = 0.03;
+
+/// Trials that are looked at as they are where a cheaper look has ranked all of them.
+const LIKELY: usize = 6;
 
 /// A term and how much it promises.
 #[derive(Clone, Debug)]
@@ -21,16 +26,27 @@ pub struct Promise {
     pub gain: f64,
     /// Where to begin.
     pub start: Fitted,
+    /// Gain per square of the first amplitude, nats: what a size would have shown. Nothing without amplitudes.
+    pub leverage: Option<f64>,
 }
 
-/// The best trial of every candidate, the most promising first. `keep` trials of a term that lie apart are kept
-/// where the family asks for it.
+/// What a screening says.
+#[derive(Clone, Debug, Default)]
+pub struct Screened {
+    /// The candidates, the most promising first.
+    pub promises: Vec<Promise>,
+    /// The largest gain of any candidate where the errors are shifted in time.
+    pub chance: Vec<f64>,
+}
+
+/// The best trial of every candidate. What they gain by chance is only looked at where `with_chance` asks for it.
 pub fn screen<F: ModelFamily + ?Sized>(
     family: &F,
     ahead: &dyn Ahead,
     node: &Node,
     candidates: &[usize],
-) -> Vec<Promise> {
+    with_chance: bool,
+) -> Screened {
     let scale = node.weighing(ahead.expected(node.setting));
     let weight: Vec<f64> =
         node.errors.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
@@ -40,15 +56,15 @@ pub fn screen<F: ModelFamily + ?Sized>(
     let mut left = weighed(&node.errors, &weight);
     own.project_out(&mut left);
     let screening = Screening { node, ahead, scale, weight, own, left };
-    let mut promises: Vec<Promise> = candidates
-        .iter()
-        .filter_map(|&term| {
-            let trials = ahead.trials(&node.model, term);
-            screening.best(family, term, &trials)
-        })
-        .collect();
+    let mut changed = Vec::new();
+    let mut promises: Vec<Promise> = Vec::new();
+    for &term in candidates {
+        let trials = screening.likely(family, term, ahead.trials(&node.model, term));
+        promises.extend(screening.best(family, term, &trials, with_chance.then_some(&mut changed)));
+    }
     promises.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    promises
+    let chance = if with_chance { chance::largest(&screening.left, &changed) } else { Vec::new() };
+    Screened { promises, chance }
 }
 
 struct Screening<'a> {
@@ -61,11 +77,40 @@ struct Screening<'a> {
 }
 
 impl Screening<'_> {
+    /// The few trials that promise most to first order, where the family can say so cheaply; else all.
+    fn likely<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        term: usize,
+        trials: Vec<Trial>,
+    ) -> Vec<Trial> {
+        if trials.len() <= LIKELY {
+            return trials;
+        }
+        let Some(columns) = self.ahead.columns(self.node.setting, term, &trials) else {
+            return trials;
+        };
+        let mut ranked: Vec<(f64, Trial)> = columns
+            .into_par_iter()
+            .zip(trials)
+            .map(|(mut columns, trial)| {
+                for column in &mut columns {
+                    column.iter_mut().zip(&self.weight).for_each(|(c, w)| *c *= w);
+                    self.own.project_out(column);
+                }
+                (self.gain(family, &trial, &columns).0, trial)
+            })
+            .collect();
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranked.into_iter().take(LIKELY).map(|(_, trial)| trial).collect()
+    }
+
     fn best<F: ModelFamily + ?Sized>(
         &self,
         family: &F,
         term: usize,
         trials: &[Trial],
+        mut changed: Option<&mut Vec<Changed>>,
     ) -> Option<Promise> {
         let probes: Vec<(Fitted, usize)> =
             trials.iter().flat_map(probes).map(|model| (model, self.node.setting)).collect();
@@ -77,7 +122,13 @@ impl Screening<'_> {
                 errors.by_ref().take(count).map(|e| self.change(&e)).collect();
             let (gain, by) = self.gain(family, trial, &columns);
             if best.as_ref().is_none_or(|best| gain > best.gain) {
-                best = Some(Promise { term, gain, start: started(trial, &by) });
+                let size = trial.amplitudes.first().map(|(_, size)| size);
+                let leverage = size.map(|size| 0.5 * dot(&columns[0], &columns[0]) / (size * size));
+                best = Some(Promise { term, gain, start: started(trial, &by), leverage });
+            }
+            if let Some(changed) = &mut changed {
+                let positive = count == 1 && positive(family, trial)[0];
+                changed.push(Changed { matrix: gram(&columns), columns, positive });
             }
         }
         best
@@ -99,13 +150,7 @@ impl Screening<'_> {
         trial: &Trial,
         columns: &[Vec<f64>],
     ) -> (f64, Vec<f64>) {
-        let parameters: Vec<f64> =
-            trial.model.parameters(family).map(|(_, p)| p.lower).collect();
-        let positive: Vec<bool> = if trial.amplitudes.is_empty() {
-            vec![true]
-        } else {
-            trial.amplitudes.iter().map(|(k, _)| parameters[*k] >= 0.0).collect()
-        };
+        let positive = positive(family, trial);
         let moment: Vec<f64> = columns.iter().map(|c| -dot(c, &self.left)).collect();
         let matrix = gram(columns);
         let mut by = constrained(&matrix, &moment, &positive);
@@ -116,6 +161,15 @@ impl Screening<'_> {
         // One nat for each free amplitude: what noise alone gives is half of that.
         (linear - 0.5 * square - by.len() as f64, by)
     }
+}
+
+/// Which amplitudes of a trial cannot be negative; a whole change has one.
+fn positive<F: ModelFamily + ?Sized>(family: &F, trial: &Trial) -> Vec<bool> {
+    if trial.amplitudes.is_empty() {
+        return vec![true];
+    }
+    let lower: Vec<f64> = trial.model.parameters(family).map(|(_, p)| p.lower).collect();
+    trial.amplitudes.iter().map(|(k, _)| lower[*k] >= 0.0).collect()
 }
 
 /// The models that a trial is looked at with.

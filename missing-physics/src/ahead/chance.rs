@@ -1,0 +1,108 @@
+//! What candidates gain by chance: the prediction errors, shifted in time against the motion.
+//!
+//! A shift keeps the size, the spikes and the autocorrelation of the errors and breaks their alignment with what a
+//! candidate does. Moments at all shifts come from one Fourier transform of each column.
+
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+
+use crate::basis::{dot, solve};
+
+/// Shifts that are looked at, evenly spread: the resolution of a p-value is 1 over this.
+pub const SHIFTS: usize = 999;
+/// Shortest shift as a share of the recording.
+const SHORTEST: f64 = 0.02;
+/// A shift at which a column resembles itself more than this is no placebo for it.
+const SIMILAR: f64 = 0.3;
+
+/// What a trial changes in the errors, freed of the model's own parameters.
+pub struct Changed {
+    /// One column for each amplitude.
+    pub columns: Vec<Vec<f64>>,
+    /// Scalar products of the columns.
+    pub matrix: Vec<Vec<f64>>,
+    /// Whether the amplitude (of a single column) cannot be negative.
+    pub positive: bool,
+}
+
+/// The largest gain of any trial at each shift of the errors, nats.
+pub fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
+    let points = left.len();
+    let shortest = ((points as f64 * SHORTEST) as usize).max(1);
+    let span = points.saturating_sub(2 * shortest);
+    let shifts: Vec<usize> =
+        (0..SHIFTS.min(span)).map(|k| shortest + k * span / SHIFTS.min(span)).collect();
+    let mut planner = RealFftPlanner::<f64>::new();
+    let (forward, inverse) = (planner.plan_fft_forward(points), planner.plan_fft_inverse(points));
+    let transform = |values: &[f64]| -> Vec<Complex<f64>> {
+        let (mut input, mut output) = (values.to_vec(), forward.make_output_vec());
+        // Lengths are the planner's own.
+        let _ = forward.process(&mut input, &mut output);
+        output
+    };
+    let correlated = |a: &[Complex<f64>], b: &[Complex<f64>]| -> Vec<f64> {
+        let mut product: Vec<Complex<f64>> = a.iter().zip(b).map(|(a, b)| a.conj() * b).collect();
+        // Both ends of the spectrum of real signals are real.
+        for end in [0, product.len() - 1] {
+            product[end].im = 0.0;
+        }
+        let mut out = inverse.make_output_vec();
+        let _ = inverse.process(&mut product, &mut out);
+        out.iter_mut().for_each(|value| *value /= points as f64);
+        out
+    };
+    let of_left = transform(left);
+    let each = |trial: &Changed| -> Vec<f64> {
+        let spectra: Vec<_> = trial.columns.iter().map(|column| transform(column)).collect();
+        let moments: Vec<Vec<f64>> = spectra.iter().map(|s| correlated(s, &of_left)).collect();
+        let own: Vec<Vec<f64>> = spectra.iter().map(|s| correlated(s, s)).collect();
+        let all: Vec<usize> = (0..moments.len()).collect();
+        let gain = |shift: &usize| {
+            let similar = own.iter().any(|own| own[*shift].abs() > SIMILAR * own[0]);
+            if similar {
+                return f64::NEG_INFINITY;
+            }
+            let moment: Vec<f64> = moments.iter().map(|m| -m[*shift]).collect();
+            if trial.positive && moment[0] < 0.0 {
+                return 0.0;
+            }
+            0.5 * dot(&solve(&trial.matrix, &moment, &all), &moment) - moment.len() as f64
+        };
+        shifts.iter().map(gain).collect()
+    };
+    let gains: Vec<Vec<f64>> = trials.par_iter().map(each).collect();
+    let most = |k: usize| gains.iter().map(|row| row[k]).fold(f64::NEG_INFINITY, f64::max);
+    (0..shifts.len()).map(most).filter(|gain| gain.is_finite()).collect()
+}
+
+/// Chance of a gain at least as large, by the shifts; never below one over their number.
+pub fn p_value(gain: f64, largest: &[f64]) -> f64 {
+    let as_large = largest.iter().filter(|other| **other >= gain).count();
+    (as_large + 1) as f64 / (largest.len() + 1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    #[test]
+    fn a_column_that_is_in_the_errors_is_told_from_one_that_is_not() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
+        let mut noise = || -> Vec<f64> { (0..2000).map(|_| random.random_range(-1.0..1.0)).collect() };
+        let (there, other, mut left) = (noise(), noise(), noise());
+        let columns = |c: &Vec<f64>| Changed {
+            columns: vec![c.clone()],
+            matrix: vec![vec![dot(c, c)]],
+            positive: false,
+        };
+        crate::basis::add_scaled(&mut left, -0.3, &there);
+        let trials = [columns(&there), columns(&other)];
+        let chance = largest(&left, &trials);
+        let gain = |c: &[f64]| 0.5 * dot(c, &left).powi(2) / dot(c, c) - 1.0;
+        assert!(p_value(gain(&there), &chance) <= 2e-3);
+        assert!(p_value(gain(&other), &chance) > 0.01);
+    }
+}

@@ -1,0 +1,366 @@
+//! A search as a [`Discovery`]: ladder, ranking, verdict.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use aep_core::Scale;
+
+use super::Ahead;
+use super::beam::{Found, Search};
+use super::chance;
+use super::compare::Difference;
+use super::decision::Decision;
+use super::node::Node;
+use super::scales;
+use crate::discover::{Event, Observer, Settings};
+use crate::family::{Fitted, ModelFamily};
+use crate::fit::{self, Fit};
+use crate::metrics::SplitMetrics;
+use crate::quantity::quantity;
+use crate::report::{Ambiguity, Budget, Candidate, Discovery, Rung, Verdict};
+use crate::screen::weights;
+use crate::split::Split;
+use crate::where_it_fails::{self, View};
+use crate::{diagnosis, ladder, noise, search, uncertainty};
+
+/// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
+pub fn discover<F: ModelFamily + ?Sized>(
+    family: &F,
+    ahead: &dyn Ahead,
+    settings: &Settings<'_>,
+    (base, excluded): (&[usize], &[usize]),
+    observer: &mut dyn Observer,
+) -> Discovery {
+    let started = Instant::now();
+    let everywhere = vec![1.0; family.target().len()];
+    let start = search::identify(family, base, &everywhere, settings.seed);
+    observer.event(&Event::BaseFitted { evaluations: start.evaluations });
+    let candidates: Vec<usize> = (0..family.terms().len())
+        .filter(|&term| {
+            let main = family.form_of(term).unwrap_or(term);
+            !family.terms()[term].always && ![term, main].iter().any(|t| excluded.contains(t))
+        })
+        .collect();
+    let stop = || {
+        let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+        asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
+    };
+    let thresholds = settings.thresholds;
+    let mut search = Search::new(family, ahead, thresholds, candidates, &stop, observer);
+    let base = search.base(start.fit.model);
+    let found = search.run(base, settings.most);
+    observer.event(&Event::Finishing);
+    let mut discovery = Report { family, ahead, settings, found }.discovery();
+    discovery.seed = settings.seed;
+    discovery.wall_s = started.elapsed().as_secs_f64();
+    discovery
+}
+
+struct Report<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    ahead: &'a dyn Ahead,
+    settings: &'a Settings<'a>,
+    found: Found,
+}
+
+impl<F: ModelFamily + ?Sized> Report<'_, F> {
+    fn discovery(self) -> Discovery {
+        let family = self.family;
+        let points = family.target().len();
+        let split = Split::new(points, family.blocks());
+        let last = self.found.rungs.last().unwrap_or(&self.found.base);
+        let as_fit = |node: &Node| fit::evaluate(family, node.model.clone(), &vec![1.0; points]);
+        let (base_fit, last_fit) = (as_fit(&self.found.base), as_fit(last));
+        let added = self.names(&self.found.added);
+        let ambiguous = self.ambiguous();
+        let budget = self.budget();
+        let verdict = self.verdict(&budget, !ambiguous.is_empty());
+        let motion = family.motion();
+        let places = |fit: &Fit| {
+            let weights = weights(family.doubt(), &fit.residual);
+            let seed = self.settings.seed;
+            let view = View { residual: &fit.residual, weights: &weights, motion: &motion, seed };
+            where_it_fails::coordinates(family, &view)
+        };
+        let where_last = places(&last_fit);
+        let where_base = if added.is_empty() { where_last.clone() } else { places(&base_fit) };
+        let quantity = family.quantity();
+        let mut noise_floor = family.noise();
+        let floor = noise::floor_of(family, &last_fit.residual);
+        noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+        let ladder = self.ladder(&split, &base_fit);
+        let summary = self.summary(verdict, &budget, &added, &ladder, &ambiguous, &where_last);
+        let mut discovery = Discovery {
+            verdict,
+            summary,
+            added,
+            ladder,
+            ranking: self.ranking(),
+            where_it_fails: where_last,
+            where_base,
+            regimes: where_it_fails::regimes(family, &last_fit.residual),
+            regimes_base: where_it_fails::regimes(family, &base_fit.residual),
+            ambiguous,
+            generic_term: None,
+            noise_floor,
+            detection_limits: self.limits(),
+            decisions: self.found.decisions.clone(),
+            budget: Some(budget),
+            untried: self.names(&self.found.untried),
+            seed: 0,
+            wall_s: 0.0,
+            notes: self.found.notes.clone(),
+            diagnosis: None,
+            diagnosis_base: None,
+            views: Vec::new(),
+            confirmation: None,
+            plots: family.plots(&base_fit.model, &last_fit.model),
+        };
+        diagnosis::attach(family, &base_fit, &last_fit, self.settings.seed, &mut discovery);
+        discovery
+    }
+
+    fn names(&self, terms: &[usize]) -> Vec<String> {
+        terms.iter().map(|term| self.family.terms()[*term].name.clone()).collect()
+    }
+
+    fn budget(&self) -> Budget {
+        let of = |node: &Node| node.scale / self.ahead.budget();
+        let last = self.found.rungs.last().unwrap_or(&self.found.base);
+        Budget {
+            expected: self.ahead.budget(),
+            base: of(&self.found.base),
+            last: of(last),
+            complete: self.found.complete,
+        }
+    }
+
+    fn verdict(&self, budget: &Budget, ambiguous: bool) -> Verdict {
+        let nothing = self.found.added.is_empty();
+        match (nothing, budget.complete, self.found.stopped) {
+            (_, _, true) if nothing => Verdict::Stopped,
+            (true, true, _) => Verdict::NothingMissing,
+            (true, false, _) => Verdict::Unexplained,
+            (false, ..) if ambiguous => Verdict::Ambiguous,
+            (false, ..) => Verdict::EffectsFound,
+        }
+    }
+
+    fn ambiguous(&self) -> Vec<Ambiguity> {
+        let added: Vec<usize> = self.found.added.clone();
+        let mut sets: Vec<Ambiguity> = Vec::new();
+        // Rivals of one and the same effect stand together.
+        for term in &added {
+            let rivals = self.found.as_good.iter().filter_map(|set| {
+                let others: Vec<usize> =
+                    set.iter().copied().filter(|t| !self.found.is_in(added.as_slice(), *t, self.family)).collect();
+                let lacks = !self.found.is_in(set, *term, self.family);
+                (others.len() == 1 && lacks).then(|| others[0])
+            });
+            let mut terms = vec![*term];
+            for rival in rivals {
+                if !terms.contains(&rival) {
+                    terms.push(rival);
+                }
+            }
+            if terms.len() > 1 {
+                let effects = self.names(&terms);
+                let experiment = self.family.experiment(&effects);
+                sets.push(Ambiguity { effects, experiment });
+            }
+        }
+        sets
+    }
+
+    fn ladder(&self, split: &Split, base_fit: &Fit) -> Vec<Rung> {
+        let mut ladder = vec![self.rung(&self.found.base, base_fit, split, None)];
+        for (k, node) in self.found.rungs.iter().enumerate() {
+            let points = self.family.target().len();
+            let fit = fit::evaluate(self.family, node.model.clone(), &vec![1.0; points]);
+            ladder.push(self.rung(node, &fit, split, Some(k)));
+        }
+        ladder
+    }
+
+    fn rung(&self, node: &Node, fit: &Fit, split: &Split, k: Option<usize>) -> Rung {
+        let terms = self.family.terms();
+        let effects = fit.model.terms.iter().filter(|&&t| !terms[t].always);
+        let added = k.map(|k| terms[self.found.added[k]].name.clone());
+        let gain: Option<&Difference> = k.map(|k| &self.found.gains[k]);
+        Rung {
+            added,
+            effects: effects.map(|&t| terms[t].name.clone()).collect(),
+            parameters: uncertainty::estimates(self.family, &self.as_prediction(node), &vec![1.0; node.errors.len()]),
+            error: ladder::errors(self.family, fit, split),
+            p_value: k.and_then(|k| self.found.p_values.get(k).copied()),
+            metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), split)),
+            likelihood_gain: gain.map(|gain| gain.nats),
+            budget: Some(node.scale / self.ahead.budget()),
+        }
+    }
+
+    /// The node as the estimator of intervals wants it.
+    fn as_prediction(&self, node: &Node) -> Fit {
+        let moved = scales::of(self.family, &node.model);
+        let jacobian = node.jacobian(self.family, self.ahead).iter().zip(&moved);
+        let parameters = node.model.parameters(self.family);
+        let columns = jacobian.zip(parameters).map(|((column, moved), (_, parameter))| {
+            let per = if parameter.scale == Scale::Log { 1.0 } else { moved.scale() };
+            column.iter().map(|value| -value / per).collect()
+        });
+        Fit {
+            model: node.model.clone(),
+            prediction: Vec::new(),
+            residual: node.errors.clone(),
+            jacobian: columns.collect(),
+            cost: 0.0,
+        }
+    }
+
+    fn ranking(&self) -> Vec<Vec<Candidate>> {
+        let row = |ranked: &super::beam::Ranked| -> Vec<Candidate> {
+            let each = ranked.rows.iter().map(|(term, model, nats)| Candidate {
+                effect: self.family.terms()[*term].name.clone(),
+                gain: share(*nats, ranked.points),
+                p_value: chance::p_value(*nats, &ranked.chance),
+                size: self.size(*term, model),
+                nats: Some(*nats),
+            });
+            each.collect()
+        };
+        self.found.ranking.iter().map(row).collect()
+    }
+
+    fn size(&self, term: usize, model: &Fitted) -> String {
+        let position = model.terms.iter().position(|t| *t == term);
+        position.map_or_else(String::new, |position| {
+            self.family.describe(term, &model.values[model.range(self.family, position)])
+        })
+    }
+
+    /// The size at which each candidate that was not found would have gained enough.
+    fn limits(&self) -> BTreeMap<String, String> {
+        let mut limits = BTreeMap::new();
+        for promise in &self.found.last_screening {
+            let term = &self.family.terms()[promise.term];
+            let amplitude = crate::shapes::amplitudes(term).first().copied();
+            let (Some(amplitude), Some(leverage)) = (amplitude, promise.leverage) else { continue };
+            if leverage <= 0.0 || self.family.form_of(promise.term).is_some() {
+                continue;
+            }
+            let size = (self.settings.thresholds.better / leverage).sqrt();
+            let words = if size <= amplitude.upper {
+                format!("{} {}", amplitude.name, quantity(size, &amplitude.unit))
+            } else {
+                format!("no {} within its limits", amplitude.name)
+            };
+            let position = promise.start.terms.len() - 1;
+            let values = &promise.start.values[promise.start.range(self.family, position)];
+            let shapes = term.parameters.iter().zip(values);
+            let at: Vec<String> = shapes
+                .filter(|(parameter, _)| parameter.role == crate::family::Role::Shape)
+                .map(|(p, value)| format!("{} {}", p.name, quantity(*value, &p.unit)))
+                .collect();
+            let at = if at.is_empty() { String::new() } else { format!(" at {}", at.join(", ")) };
+            limits.insert(term.name.clone(), words + &at);
+        }
+        limits
+    }
+
+    fn summary(
+        &self,
+        verdict: Verdict,
+        budget: &Budget,
+        added: &[String],
+        ladder: &[Rung],
+        ambiguous: &[Ambiguity],
+        places: &[crate::report::Where],
+    ) -> String {
+        let name = self.family.quantity().name;
+        let key = ladder::relative_key(self.family);
+        let relative = |rung: Option<&Rung>| {
+            rung.and_then(|rung| rung.error.get(&key)).map_or(0.0, |e| 100.0 * e.validation)
+        };
+        let (first, last) = (relative(ladder.first()), relative(ladder.last()));
+        let mut text = match verdict {
+            Verdict::NothingMissing => format!(
+                "Nothing is missing: one sample ahead the base model errs {:.2} times as much as the sensors make \
+                 it, and no effect of the library lowers that by more than chance.",
+                budget.base
+            ),
+            Verdict::Unexplained => format!(
+                "One sample ahead the model errs {:.1} times as much as the sensors make it, and no effect of the \
+                 library explains that.",
+                budget.last
+            ),
+            Verdict::Stopped => "The search was cut short before anything could be said.".to_owned(),
+            Verdict::EffectsFound | Verdict::Ambiguous => format!(
+                "Missing: {}. With it the prediction error falls from {:.2} to {:.2} times what the sensors make, \
+                 that of the {name} from {first:.2} % to {last:.2} %.",
+                added.join(", "),
+                budget.base,
+                budget.last
+            ),
+        };
+        if !budget.complete && verdict != Verdict::Stopped {
+            if !added.is_empty() {
+                let _ = write!(
+                    text,
+                    " The model is still incomplete: {:.1} times what the sensors make is left.",
+                    budget.last
+                );
+            }
+            for place in self.found.places.iter().take(1) {
+                let _ = write!(text, " {place}");
+            }
+            let likely = places.iter().find(|place| place.p_value <= 0.005);
+            if let Some(place) = likely.filter(|_| self.found.places.is_empty()) {
+                let _ = write!(text, " It depends most on {}: {}.", place.coordinate, place.note);
+            }
+        }
+        for choice in ambiguous {
+            let _ = write!(
+                text,
+                " This data cannot tell {} apart: {}",
+                choice.effects.join(" from "),
+                choice.experiment
+            );
+        }
+        if self.found.stopped {
+            let untried = self.names(&self.found.untried);
+            let _ = write!(
+                text,
+                " Time ran out{}.",
+                if untried.is_empty() { String::new() } else { format!("; not tried: {}", untried.join(", ")) }
+            );
+        }
+        text
+    }
+}
+
+/// Share of the squared error that a gain in log-likelihood of so many errors stands for.
+fn share(nats: f64, points: f64) -> f64 {
+    1.0 - (-2.0 * nats / points.max(1.0)).exp()
+}
+
+/// Decisions in one line each, for people.
+pub fn lines(decisions: &[Decision]) -> Vec<String> {
+    decisions
+        .iter()
+        .map(|d| {
+            format!(
+                "{} | {} against {}: {:+.1} +- {:.1} nats, {:.2} times the budget: {:?}{}",
+                d.rung,
+                d.candidate.join(" + "),
+                d.compared_with.join(" + "),
+                d.difference,
+                d.standard_error,
+                d.budget,
+                d.outcome,
+                if d.reason.is_empty() { String::new() } else { format!(" ({})", d.reason) }
+            )
+        })
+        .collect()
+}
