@@ -1,5 +1,7 @@
 //! Backlash: after a reversal the drive crosses a gap before it moves the load again.
 
+mod two_mass;
+
 use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
 use crate::axis::Quantity;
 use crate::simd::sign;
@@ -10,13 +12,17 @@ use crate::simd::sign;
 #[derive(Clone, Copy, Debug)]
 pub struct Backlash;
 
+const WIDTH: Parameter =
+    Parameter::shape("b", "width of the gap", Quantity::Length, (1e-6, 1e-2), 2e-5);
+
+static FORMS: [&dyn Effect; 1] = [&two_mass::TwoMass];
 static ABOUT: About = About {
     name: "backlash",
     title: "backlash",
     equation: "-F_L s while the drive is inside the gap, over the distance b after each reversal",
     parameters: &[
         Parameter::level("F_L", "friction of the load behind the gap", Quantity::Force, 200.0, 4.0),
-        Parameter::shape("b", "width of the gap", Quantity::Length, (1e-6, 1e-2), 2e-5),
+        WIDTH,
     ],
     slots: &[Slot::Memory],
     shows: "after a reversal the force drops to the inner part over the distance b, at every speed",
@@ -26,6 +32,10 @@ static ABOUT: About = About {
 impl Effect for Backlash {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

@@ -1,5 +1,7 @@
 //! A flexible coupling: part of the mass hangs behind a spring and a damper.
 
+mod friction;
+
 use std::f64::consts::TAU;
 
 use super::{
@@ -12,21 +14,24 @@ use crate::simd::add_to;
 #[derive(Clone, Copy, Debug)]
 pub struct FlexibleCoupling;
 
+const LOAD: Parameter =
+    Parameter::level("m_L", "mass behind the coupling", Quantity::Mass, 1e3, 10.0);
+const FREQUENCY: Parameter = Parameter::shape(
+    "f",
+    "its frequency with the drive blocked",
+    Quantity::Frequency,
+    (1.0, 500.0),
+    50.0,
+);
+const ZETA: Parameter =
+    Parameter::shape("zeta", "its damping ratio", Quantity::One, (1e-3, 2.0), 0.05);
+
+static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];
 static ABOUT: About = About {
     name: "flexible-coupling",
     title: "load behind a flexible coupling",
     equation: "m_L x_L'' = k (x - x_L) + d (x' - x_L') acts back on the mass, k = m_L (2 pi f)^2, d = 2 zeta m_L 2 pi f",
-    parameters: &[
-        Parameter::level("m_L", "mass behind the coupling", Quantity::Mass, 1e3, 10.0),
-        Parameter::shape(
-            "f",
-            "its frequency with the drive blocked",
-            Quantity::Frequency,
-            (1.0, 500.0),
-            50.0,
-        ),
-        Parameter::shape("zeta", "its damping ratio", Quantity::One, (1e-3, 2.0), 0.05),
-    ],
+    parameters: &[LOAD, FREQUENCY, ZETA],
     slots: &[Slot::Attached],
     shows: "ringing of the residual after edges of the acceleration",
     reference: "W. Leonhard, Control of Electrical Drives, Springer (two-mass system)",
@@ -35,6 +40,10 @@ static ABOUT: About = About {
 impl Effect for FlexibleCoupling {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
     }
 
     fn element(&self) -> Option<&dyn Element> {

@@ -9,6 +9,7 @@ mod drive;
 mod element;
 mod lanes;
 mod library;
+mod load;
 mod memory;
 mod past;
 mod sensor;
@@ -108,7 +109,7 @@ pub trait Effect: Sync + Send {
         false
     }
 
-    /// Whether a comparison of forces along a measured motion can show it at all.
+    /// Whether a comparison of forces along a measured motion can show it at all, apart from other forms of it.
     fn shows_in_force(&self) -> bool {
         true
     }

@@ -53,6 +53,10 @@ pub struct Plants {
     pub(super) attached: Vec<usize>,
     pub(super) sensors: Vec<usize>,
     pub(super) contact: Option<usize>,
+    /// Elements with the encoder on their own body.
+    shows: Vec<usize>,
+    /// Whether Newton needs a bracket.
+    pub(super) bracketed: bool,
     pub(super) iterations: usize,
     pub(super) mass: Vec<f64>,
     pub(super) time: Vec<f64>,
@@ -110,7 +114,11 @@ impl Plants {
         let on = |slot: Slot| -> Vec<usize> {
             (0..effects.len()).filter(|k| effects[*k].effect.about().acts_on(slot)).collect()
         };
-        let elements = effects.iter().filter_map(|active| active.effect.element());
+        let elements = || effects.iter().filter_map(|active| active.effect.element());
+        let shows = |k: &usize| {
+            let element = effects[*k].effect.element();
+            element.is_some_and(|e| e.shown(Parameters::new(&[], 0), &[], &mut []))
+        };
         Self {
             lanes,
             smooth: on(Slot::SmoothForce),
@@ -120,7 +128,9 @@ impl Plants {
             attached: on(Slot::Attached),
             sensors: on(Slot::Sensor),
             contact: on(Slot::Contact).first().copied(),
-            iterations: elements.map(Element::iterations).max().unwrap_or(0),
+            shows: (0..effects.len()).filter(shows).collect(),
+            bracketed: elements().any(Element::bracketed),
+            iterations: elements().map(Element::iterations).max().unwrap_or(0),
             effects,
             mass: vec![1.0; lanes],
             time: vec![0.0; lanes],
@@ -184,12 +194,41 @@ impl Plants {
     /// Positions as the sensor shows them, m or rad.
     pub fn shown(&self) -> Cow<'_, [f64]> {
         let mut shown = Cow::Borrowed(&self.position[..]);
+        for active in self.shows.iter().map(|k| &self.effects[*k]) {
+            if let Some(element) = active.effect.element() {
+                let p = Parameters::new(&active.values, self.lanes);
+                element.shown(p, &self.loaded(active), shown.to_mut());
+            }
+        }
         for active in self.sensors.iter().map(|k| &self.effects[*k]) {
             if let Some(sensor) = active.effect.sensor() {
                 sensor.show(Parameters::new(&active.values, self.lanes), shown.to_mut());
             }
         }
         shown
+    }
+
+    /// Velocities of what the encoder is on, m/s or rad/s.
+    pub fn shown_velocity(&self) -> Cow<'_, [f64]> {
+        let mut shown = Cow::Borrowed(&self.velocity[..]);
+        for active in self.shows.iter().map(|k| &self.effects[*k]) {
+            if let Some(element) = active.effect.element() {
+                let p = Parameters::new(&active.values, self.lanes);
+                element.shown_velocity(p, &self.loaded(active), shown.to_mut());
+            }
+        }
+        shown
+    }
+
+    /// State of an element that is no contact; lanes that were started since the last step have none yet.
+    fn loaded<'a>(&self, active: &'a Active) -> Cow<'a, [f64]> {
+        let mut state = Cow::Borrowed(&active.element[..]);
+        for (i, start) in &self.fresh {
+            if let Some(lane) = active.loaded(*i, self.lanes, 0.0, start) {
+                scatter(&lane, state.to_mut(), *i, self.lanes);
+            }
+        }
+        state
     }
 
     /// Velocities, m/s or rad/s.
@@ -331,11 +370,18 @@ impl Active {
     }
 
     fn load_element(&mut self, i: usize, lanes: usize, level: f64, start: &Start) {
-        let Some(element) = self.effect.element() else { return };
+        if let Some(state) = self.loaded(i, lanes, level, start) {
+            scatter(&state, &mut self.element, i, lanes);
+        }
+    }
+
+    /// State of the element in lane `i` at the start.
+    fn loaded(&self, i: usize, lanes: usize, level: f64, start: &Start) -> Option<Vec<f64>> {
+        let element = self.effect.element()?;
         let mut state = vec![0.0; element.states()];
         let onset = Onset { level, used: start.used, velocity: start.velocity };
         element.start(&self.parameters(i, lanes), &onset, &mut state);
-        scatter(&state, &mut self.element, i, lanes);
+        Some(state)
     }
 }
 

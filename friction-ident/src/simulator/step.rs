@@ -183,10 +183,19 @@ impl Plants {
 
     /// Mean velocity with the elements, by Newton from no displacement.
     fn newton(&mut self) {
-        self.scratch.displacement.fill(0.0);
+        let s = &mut self.scratch;
+        s.displacement.fill(0.0);
+        if self.bracketed {
+            s.low.fill([f64::NEG_INFINITY, f64::NAN]);
+            s.high.fill([f64::INFINITY, f64::NAN]);
+        }
         for _ in 0..=self.iterations {
             self.respond_elements();
             let s = &mut self.scratch;
+            if self.bracketed {
+                s.bracket();
+                continue;
+            }
             newton(
                 &s.left,
                 &s.inertia,

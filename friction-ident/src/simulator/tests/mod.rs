@@ -3,6 +3,7 @@
 mod closed_forms;
 mod convergence;
 mod random_plants;
+mod two_masses;
 
 use missing_physics::Hold;
 
