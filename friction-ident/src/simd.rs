@@ -71,15 +71,16 @@ pub(crate) fn sign(x: f64) -> f64 {
     }
 }
 
+/// Bits of a float's mantissa, of 1, and of 2^52, which turns a whole number in its mantissa into a float at once.
+const MANTISSA: u64 = (1 << 52) - 1;
+const ONE: u64 = 0x3ff0_0000_0000_0000;
+const WHOLE: u64 = 0x4330_0000_0000_0000;
+
 /// Natural logarithm of a normal, positive `x`, to two units of the last place of the larger of it and 1: the
 /// standard one is a call, which keeps a loop from being vectorised.
 #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
 pub(crate) fn ln(x: f64) -> f64 {
-    const MANTISSA: u64 = (1 << 52) - 1;
-    const ONE: u64 = 0x3ff0_0000_0000_0000;
-    /// 2^52: a whole number in its mantissa is a float at once.
-    const WHOLE: u64 = 0x4330_0000_0000_0000;
     let bits = x.to_bits();
     let mantissa = f64::from_bits((bits & MANTISSA) | ONE);
     let exponent = f64::from_bits((bits >> 52) | WHOLE) - (4_503_599_627_370_496.0 + 1023.0);

@@ -49,7 +49,7 @@ const HARMONICS: usize = 6;
 
 /// Forces per unit of `a_1 .. a_6, b_1 .. b_6` of a ripple of six harmonics.
 fn harmonics(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
-    let mut columns = vec![Vec::with_capacity(wave.len()); 2 * HARMONICS];
+    let mut columns = vec![Vec::new(); 2 * HARMONICS];
     for (sin, cos) in wave {
         let (mut sin_k, mut cos_k) = (*sin, *cos);
         for k in 0..HARMONICS {

@@ -107,7 +107,7 @@ fn hats(velocity: f64, high: f64) -> [f64; FREE] {
     let (mut hats, mut before) = ([0.0; FREE], 1.0);
     for k in 0..FREE {
         // How far the speed has gone from knot k to the next one. Differences of these are exact at the ends.
-        let next = ((z - KNOTS[k]) * SLOPES[k]).max(0.0).min(1.0);
+        let next = ((z - KNOTS[k]) * SLOPES[k]).clamp(0.0, 1.0);
         hats[k] = before - next;
         before = next;
     }
