@@ -406,7 +406,7 @@ impl<'a> Walk<'a> {
         let rest = [0.0; BLOCK];
         let mut breakaway = self.sum(terms, Slot::FrictionLevel, |effect, p, m, level| {
             let rest = &rest[..level.len()];
-            let m = Motion { velocity: rest, level_velocity: rest, ..*m };
+            let m = Motion { velocity: rest, acceleration: rest, level_velocity: rest, ..*m };
             effect.friction_level(p, &m, level);
         });
         add(&mut breakaway, &self.remembered);
@@ -418,7 +418,11 @@ impl<'a> Walk<'a> {
         let unit = &[term.with_unit_amplitude(k)];
         let mut column = self.smooth_force(unit);
         // Not `friction_level`: a column may be negative, only the sum of all is cut off.
-        let level = self.sum(unit, Slot::FrictionLevel, |e, p, m, out| e.friction_level(p, m, out));
+        let mut level =
+            self.sum(unit, Slot::FrictionLevel, |e, p, m, out| e.friction_level(p, m, out));
+        if unit[0].effect().about().acts_on(Slot::Memory) {
+            add(&mut level, &self.remembered_by(&unit[0]));
+        }
         for ((column, level), used) in column.iter_mut().zip(level).zip(&self.used) {
             *column += level * used;
         }
@@ -453,6 +457,7 @@ impl<'a> Walk<'a> {
             time: &self.motion.time[r.clone()],
             position: &self.motion.position[r.clone()],
             velocity: &self.motion.velocity[r.clone()],
+            acceleration: &self.motion.acceleration[r.clone()],
             direction: &self.direction[r.clone()],
             level_velocity: &self.level_velocity[r.clone()],
             dwell: &self.dwell[r.clone()],

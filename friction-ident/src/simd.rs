@@ -71,6 +71,31 @@ pub(crate) fn sign(x: f64) -> f64 {
     }
 }
 
+/// Bits of a float's mantissa, of 1, and of 2^52, which turns a whole number in its mantissa into a float at once.
+const MANTISSA: u64 = (1 << 52) - 1;
+const ONE: u64 = 0x3ff0_0000_0000_0000;
+const WHOLE: u64 = 0x4330_0000_0000_0000;
+
+/// Natural logarithm of a normal, positive `x`, to two units of the last place of the larger of it and 1: the
+/// standard one is a call, which keeps a loop from being vectorised.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(crate) fn ln(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let mantissa = f64::from_bits((bits & MANTISSA) | ONE);
+    let exponent = f64::from_bits((bits >> 52) | WHOLE) - (4_503_599_627_370_496.0 + 1023.0);
+    let upper = mantissa > std::f64::consts::SQRT_2;
+    let mantissa = if upper { 0.5 * mantissa } else { mantissa };
+    let exponent = if upper { exponent + 1.0 } else { exponent };
+    // ln m = 2 artanh f, |f| < 0.172.
+    let f = (mantissa - 1.0) / (mantissa + 1.0);
+    let q = f * f;
+    let sum = 1.0 / 15.0 + q * (1.0 / 17.0 + q * (1.0 / 19.0 + q / 21.0));
+    let sum = 1.0 / 9.0 + q * (1.0 / 11.0 + q * (1.0 / 13.0 + q * sum));
+    let sum = 1.0 + q * (1.0 / 3.0 + q * (1.0 / 5.0 + q * (1.0 / 7.0 + q * sum)));
+    exponent * std::f64::consts::LN_2 + 2.0 * f * sum
+}
+
 /// Defines functions whose bodies are compiled for every [`InstructionSet`].
 macro_rules! vectorised {
     ($($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $body:block)*) => {$(
@@ -121,6 +146,17 @@ vectorised! {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn the_logarithm_is_that_of_the_standard_library() {
+        for k in -3000..3000 {
+            let x = (f64::from(k) * 0.0137).exp();
+            let (found, exact) = (super::ln(x), x.ln());
+            assert!(
+                (found - exact).abs() <= 4.5e-16 * exact.abs().max(1.0),
+                "{x}: {found} {exact}"
+            );
+        }
+    }
 
     vectorised! {
         fn scaled(factor: f64, values: &[f64], out: &mut [f64]) {

@@ -231,6 +231,7 @@ impl Place {
             time: &[self.time],
             position: &[self.position],
             velocity: &[self.velocity],
+            acceleration: &[0.0],
             direction: &[self.direction],
             level_velocity: &[self.level_velocity],
             dwell: &[self.dwell],
@@ -245,7 +246,8 @@ fn obstacle(effect: &dyn Effect) -> Option<&'static str> {
     let about = effect.about();
     let known = [memory::DELAYED, memory::LAGGED, memory::BOND];
     match about.name {
-        "load-friction" => return Some("it needs the force of the drive"),
+        "load-friction" | "load-friction:both" => return Some("it needs the force of the drive"),
+        "load-friction:inertia" => return Some("it needs the acceleration"),
         "drift" => return Some("its time is that of the recording"),
         _ => {}
     }

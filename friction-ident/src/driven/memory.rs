@@ -57,6 +57,28 @@ impl Walk<'_> {
         self.level_velocity = level_velocity.into();
     }
 
+    /// Level that the memory of `term` adds.
+    pub(super) fn remembered_by(&self, term: &Term) -> Vec<f64> {
+        let mut walk = Walk {
+            motion: self.motion,
+            direction: self.direction.clone(),
+            level_velocity: self.level_velocity.clone(),
+            dwell: self.dwell.clone(),
+            bond: self.bond.clone(),
+            remembered: vec![0.0; self.motion.len()],
+            drive_force: self.drive_force.clone(),
+            smooth: Vec::new(),
+            mass: self.mass,
+            friction: Vec::new(),
+            used: Vec::new(),
+            attached: Vec::new(),
+        };
+        if let Some(memory) = term.effect().memory() {
+            walk.recall_one(term, memory, &[]);
+        }
+        walk.remembered
+    }
+
     /// Takes the step to sample `k` into a state.
     fn remember(
         &self,

@@ -118,6 +118,7 @@ fn columns_times_values_are_the_force() {
         .and_then(|m| m.with("position-friction", &[]))
         .and_then(|m| m.with("actuator-lag", &[]))
         .and_then(|m| m.with("presliding", &[("k_t", 1e5)]))
+        .and_then(|m| m.with("reversal-decay", &[("F_r", 0.7)]))
         .unwrap();
     let split = columns_along(&model, &sine.motion());
     let mut sum = split.rest.clone();

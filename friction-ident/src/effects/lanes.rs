@@ -48,6 +48,8 @@ pub struct Motion<'a> {
     pub position: &'a [f64],
     /// Velocity, m/s or rad/s.
     pub velocity: &'a [f64],
+    /// Acceleration, m/s^2 or rad/s^2; in a simulation its mean over the last step.
+    pub acceleration: &'a [f64],
     /// Direction of sliding, or of the sliding that impends at rest: -1 or 1 (0 where none does).
     pub direction: &'a [f64],
     /// The velocity that the friction level follows: `velocity`, unless an effect remembers.

@@ -31,6 +31,7 @@ pub mod offset;
 pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
+pub mod reversal_decay;
 pub mod ripple;
 pub mod rising_static_friction;
 pub mod saturation;
@@ -38,6 +39,7 @@ pub mod shear_thinning;
 pub mod spring;
 pub mod stribeck;
 pub mod viscous;
+pub mod viscous_stroke;
 
 #[cfg(test)]
 mod testing;
@@ -124,15 +126,17 @@ pub static ALL: &[&dyn Effect] = &[
     &stribeck::STRIBECK,
     &frictional_memory::FrictionalMemory,
     &rising_static_friction::RisingStaticFriction,
+    &reversal_decay::ReversalDecay,
     &presliding::PRESLIDING,
     &ripple::Ripple,
     &position_friction::POSITION_FRICTION,
     &spring::Spring,
     &gravity_pendulum::GravityPendulum,
     &quadratic_drag::QuadraticDrag,
-    &load_friction::LoadFriction,
+    &load_friction::LOAD_FRICTION,
     &drift::Drift,
     &shear_thinning::ShearThinning,
+    &viscous_stroke::ViscousStroke,
     &actuator_lag::ActuatorLag,
     &input_delay::InputDelay,
     &saturation::Saturation,

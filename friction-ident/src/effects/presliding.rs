@@ -1,6 +1,7 @@
 //! Pre-sliding: the contact is a spring up to the friction level, then it slides.
 
 mod bristle;
+mod free;
 mod maxwell;
 
 use super::{
@@ -30,7 +31,8 @@ enum Breakaway {
 /// The default form.
 pub static PRESLIDING: Presliding = Presliding { breakaway: Breakaway::Kinetic };
 static STATIC: Presliding = Presliding { breakaway: Breakaway::Static };
-static FORMS: [&dyn Effect; 4] = [&STATIC, &bristle::DAHL, &bristle::LUGRE, &maxwell::MaxwellSlip];
+static FORMS: [&dyn Effect; 5] =
+    [&STATIC, &bristle::DAHL, &bristle::LUGRE, &maxwell::MaxwellSlip, &free::Free];
 
 const STIFFNESS: Parameter = Parameter::shape(
     "k_t",

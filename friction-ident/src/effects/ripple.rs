@@ -9,6 +9,39 @@ use crate::axis::Quantity;
 #[derive(Clone, Copy, Debug)]
 pub struct Ripple;
 
+/// Six harmonics of period `p`.
+#[derive(Clone, Copy, Debug)]
+struct Harmonics;
+
+/// One harmonic of period `p` with amplitudes of its own for either direction of motion.
+///
+/// The mean of both is a force, half of their difference a friction level: at rest the axis holds
+/// between the two, and at a reversal the force jumps where it turns and not half a step beside it.
+#[derive(Clone, Copy, Debug)]
+struct Direction;
+
+static HARMONICS: Harmonics = Harmonics;
+static DIRECTION: Direction = Direction;
+static FORMS: [&dyn Effect; 2] = [&HARMONICS, &DIRECTION];
+
+/// Harmonics of the finer form.
+const COUNT: usize = 6;
+const SHOWS: &str = "a line at 1/l in the residual's spectrum over position";
+const PERIOD: Parameter =
+    Parameter::shape("l", "period: screw lead, pole pitch", Quantity::Length, (2e-4, 0.2), 5e-3);
+
+const fn sine(name: &'static str, default: f64) -> Parameter {
+    Parameter::signed(name, "sine amplitude of harmonic k", Quantity::Force, 50.0, default)
+}
+
+const fn cosine(name: &'static str) -> Parameter {
+    Parameter::signed(name, "cosine amplitude of harmonic k", Quantity::Force, 50.0, 0.0)
+}
+
+const fn of_direction(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
+    Parameter::signed(name, meaning, Quantity::Force, 50.0, default)
+}
+
 const A1: &str = "sine amplitude of the period";
 const B1: &str = "cosine amplitude of the period";
 const A2: &str = "sine amplitude of half the period";
@@ -23,22 +56,61 @@ static ABOUT: About = About {
         Parameter::signed("b_1", B1, Quantity::Force, 50.0, 0.0),
         Parameter::signed("a_2", A2, Quantity::Force, 50.0, 0.0),
         Parameter::signed("b_2", B2, Quantity::Force, 50.0, 0.0),
-        Parameter::shape(
-            "l",
-            "period: screw lead, pole pitch",
-            Quantity::Length,
-            (2e-4, 0.2),
-            5e-3,
-        ),
+        PERIOD,
     ],
     slots: &[Slot::SmoothForce],
-    shows: "a line at 1/l in the residual's spectrum over position",
+    shows: SHOWS,
     reference: "G. Otten et al., IEEE/ASME Trans. Mechatronics 2, 1997 (cogging)",
+};
+
+static HARMONICS_ABOUT: About = About {
+    name: "ripple:harmonics",
+    title: "force ripple along the stroke, six harmonics",
+    equation: "sum_{k=1..6} a_k sin(2 pi k x/l) + b_k cos(2 pi k x/l)",
+    parameters: &[
+        sine("a_1", 1.0),
+        sine("a_2", 0.0),
+        sine("a_3", 0.0),
+        sine("a_4", 0.0),
+        sine("a_5", 0.0),
+        sine("a_6", 0.0),
+        cosine("b_1"),
+        cosine("b_2"),
+        cosine("b_3"),
+        cosine("b_4"),
+        cosine("b_5"),
+        cosine("b_6"),
+        PERIOD,
+    ],
+    slots: &[Slot::SmoothForce],
+    shows: "lines at 1/l, 2/l, 3/l and so on in the residual's spectrum over position",
+    reference: "P. J. Hor, Z. Q. Zhu, D. Howe, J. Rees-Jones, IEEE Trans. Magnetics 34, 1998 (cogging)",
+};
+static DIRECTION_ABOUT: About = About {
+    name: "ripple:direction",
+    title: "force ripple along the stroke, another one for either direction",
+    equation: "a_p sin(2 pi x/l) + b_p cos(2 pi x/l) for v > 0, a_m, b_m instead for v < 0, their mean at rest",
+    parameters: &[
+        of_direction("a_p", "sine amplitude of the motion forth", 1.0),
+        of_direction("b_p", "cosine amplitude of the motion forth", 0.0),
+        of_direction("a_m", "sine amplitude of the motion back", 0.5),
+        of_direction("b_m", "cosine amplitude of the motion back", 0.0),
+        PERIOD,
+    ],
+    slots: &[Slot::SmoothForce, Slot::FrictionLevel],
+    shows: "a line at 1/l in the residual's spectrum over position, of another size or phase for the motion forth \
+            than for the motion back",
+    reference: "B. Armstrong-Helouvry, Control of Machines with Friction, Kluwer 1991 (position-dependent friction \
+                of either direction)",
 };
 
 impl Effect for Ripple {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
@@ -54,10 +126,95 @@ impl Effect for Ripple {
     }
 }
 
+impl Effect for Harmonics {
+    fn about(&self) -> &'static About {
+        &HARMONICS_ABOUT
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        let lanes = out.force.len();
+        let of = |k: usize| &p.get(k)[..lanes];
+        let a: [&[f64]; COUNT] = std::array::from_fn(of);
+        let b: [&[f64]; COUNT] = std::array::from_fn(|k| of(COUNT + k));
+        let (period, position) = (of(2 * COUNT), &m.position[..lanes]);
+        for (i, force) in out.force.iter_mut().enumerate() {
+            let (sin, cos) = (TAU * (position[i] / period[i])).sin_cos();
+            let (mut sin_k, mut cos_k, mut sum) = (sin, cos, 0.0);
+            for (a, b) in a.iter().zip(&b) {
+                sum += a[i] * sin_k + b[i] * cos_k;
+                (sin_k, cos_k) = (sin_k * cos + cos_k * sin, cos_k * cos - sin_k * sin);
+            }
+            *force += sum;
+        }
+    }
+}
+
+impl Effect for Direction {
+    fn about(&self) -> &'static About {
+        &DIRECTION_ABOUT
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        half(p, m.position, 1.0, out.force);
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
+        half(p, m.position, -1.0, level);
+    }
+}
+
+/// Adds half of the ripple forth and half of that back times `back`.
+fn half(p: Parameters<'_>, position: &[f64], back: f64, out: &mut [f64]) {
+    let [a_p, b_p, a_m, b_m, period] = [0, 1, 2, 3, 4].map(|k| &p.get(k)[..out.len()]);
+    for (i, (out, x)) in out.iter_mut().zip(position).enumerate() {
+        let (sin, cos) = (TAU * (x / period[i])).sin_cos();
+        *out += 0.5 * ((a_p[i] + back * a_m[i]) * sin + (b_p[i] + back * b_m[i]) * cos);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{Point, smooth};
+    use super::super::testing::{Point, along_and_simulated, level, smooth};
     use super::*;
+
+    #[test]
+    fn every_harmonic_has_its_period() {
+        let mut p: Vec<f64> = (0..2 * COUNT).map(|k| (1.0 + k as f64).sin()).collect();
+        p.push(5e-3);
+        for x in [0.0, 0.37e-3, 1.9e-3, -3.1e-3] {
+            let exact: f64 = (0..COUNT)
+                .map(|k| (p[k], p[COUNT + k], TAU * (k + 1) as f64 * x / 5e-3))
+                .map(|(a, b, angle)| a * angle.sin() + b * angle.cos())
+                .sum();
+            let (force, _) = smooth(&HARMONICS, &p, Point::at(x, 0.1));
+            assert!((force - exact).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn either_direction_has_its_ripple_and_rest_their_mean() {
+        let p = [2.0, 0.3, -1.0, 0.5, 5e-3];
+        let (sin, cos) = (TAU * 0.37e-3 / 5e-3).sin_cos();
+        let (forth, back) = (2.0 * sin + 0.3 * cos, -sin + 0.5 * cos);
+        for (v, exact) in [(0.1, forth), (-0.1, back), (0.0, 0.5 * (forth + back))] {
+            let point = Point::at(0.37e-3, v);
+            let sign = crate::simd::sign(v);
+            let force = smooth(&DIRECTION, &p, point).0 + sign * level(&DIRECTION, &p, point);
+            assert!((force - exact).abs() < 1e-12, "{v}");
+        }
+    }
+
+    #[test]
+    fn the_force_along_a_simulated_motion_is_the_one_that_made_it() {
+        let harmonics = [("a_2", 1.0), ("b_6", -0.5), ("l", 0.02)];
+        let direction = [("a_p", 2.0), ("b_p", 1.0), ("a_m", -1.0), ("b_m", 0.5), ("l", 0.01)];
+        let forms: [(&str, &[(&str, f64)]); 2] =
+            [("ripple:harmonics", &harmonics), ("ripple:direction", &direction)];
+        for form in forms {
+            let left = along_and_simulated(&[form], None);
+            assert!(left < 0.02, "{}: {left}", form.0);
+        }
+    }
 
     #[test]
     fn both_harmonics_have_their_period() {

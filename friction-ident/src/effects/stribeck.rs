@@ -1,5 +1,7 @@
 //! The Stribeck effect: more friction at low speed, where the lubricant film has not formed yet.
 
+mod free;
+
 use super::{About, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
@@ -23,7 +25,7 @@ pub struct Stribeck(Form);
 pub static STRIBECK: Stribeck = Stribeck(Form::Rational);
 static GAUSSIAN: Stribeck = Stribeck(Form::Gaussian);
 static EXPONENTIAL: Stribeck = Stribeck(Form::Exponential);
-static FORMS: [&dyn Effect; 2] = [&GAUSSIAN, &EXPONENTIAL];
+static FORMS: [&dyn Effect; 3] = [&GAUSSIAN, &EXPONENTIAL, &free::Free];
 
 const HEIGHT: Parameter = Parameter::level(
     "dF",

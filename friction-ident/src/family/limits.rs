@@ -218,3 +218,24 @@ pub fn resonances(term: &Term) -> Vec<Vec<f64>> {
     let both = |f: f64| DAMPING.iter().map(move |zeta| vec![f, *zeta]);
     line.unwrap_or_default().into_iter().flat_map(both).collect()
 }
+
+/// Trial breakaway distances of a free contact, and its trial dampings.
+const DISTANCES: usize = 16;
+const BRISTLES: usize = 3;
+
+/// Trial shapes of a free contact: the elements share the level evenly at first, as a grid over all shares would be
+/// some thousand trials.
+pub fn free_contacts(term: &Term) -> Vec<Vec<f64>> {
+    let trials = |parameter: &Parameter| match parameter.name.as_str() {
+        "d" => missing_physics::shapes::spread(parameter, DISTANCES),
+        "sigma_1" => missing_physics::shapes::spread(parameter, BRISTLES),
+        _ => vec![0.0],
+    };
+    term.parameters.iter().fold(vec![Vec::new()], |points, parameter| {
+        let line = trials(parameter);
+        let longer = |point: &Vec<f64>| -> Vec<Vec<f64>> {
+            line.iter().map(|value| [point.as_slice(), &[*value]].concat()).collect()
+        };
+        points.iter().flat_map(longer).collect()
+    })
+}

@@ -72,6 +72,7 @@ pub struct FrictionFamily {
     blocks: Vec<Range<usize>>,
     stroke: (f64, f64),
     ahead: Option<ahead::OneAhead>,
+    top_speed: f64,
 }
 
 impl FrictionFamily {
@@ -114,6 +115,7 @@ impl FrictionFamily {
             blocks: coordinates::cycles(&prepared),
             stroke,
             ahead: None,
+            top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
             prepared,
         };
         let (simple, doubt) = family.disagreement();
@@ -123,11 +125,12 @@ impl FrictionFamily {
         Ok(family)
     }
 
-    /// The same with the stroke of `other`: a law along the stroke that was identified there then means
-    /// the same places here.
+    /// The same with the stroke and the top speed of `other`: a law along the stroke or a curve over speed that
+    /// was identified there then means the same places and speeds here.
     #[must_use]
     pub fn with_stroke_of(mut self, other: &Self) -> Self {
         self.stroke = other.stroke;
+        self.top_speed = other.top_speed;
         self
     }
 
@@ -196,12 +199,13 @@ impl FrictionFamily {
         Ok(fitted)
     }
 
-    /// Parameters that are not fitted: the stroke is that of the recording, a spring is relaxed in
+    /// Parameters that are not fitted: stroke and top speed are those of the recording, a spring is relaxed in
     /// its middle.
     fn fixed(&self, name: &str) -> Option<f64> {
         match name {
             "start" => Some(self.stroke.0),
             "end" => Some(self.stroke.1),
+            "v_high" => Some(self.top_speed),
             "x_0" => Some(f64::midpoint(self.stroke.0, self.stroke.1)),
             _ => None,
         }
@@ -304,11 +308,15 @@ impl ModelFamily for FrictionFamily {
                 .map(|k| vec![std::f64::consts::PI * f64::from(k) / f64::from(ANGLES)])
                 .collect();
         }
-        if ["ripple", "encoder"].contains(&self.terms[term].name.as_str()) {
+        let periodic = ["ripple", "ripple:harmonics", "ripple:direction", "encoder"];
+        if periodic.contains(&self.terms[term].name.as_str()) {
             return limits::periods(&self.prepared, self.stroke, &self.terms[term]);
         }
         if self.terms[term].name == "flexible-coupling" {
             return limits::resonances(&self.terms[term]);
+        }
+        if self.terms[term].name == "presliding:free" {
+            return limits::free_contacts(&self.terms[term]);
         }
         missing_physics::shapes::grid(&self.terms[term])
     }
@@ -352,6 +360,7 @@ impl ModelFamily for FrictionFamily {
     ) -> Vec<Vec<Vec<f64>>> {
         match self.terms[term].name.as_str() {
             "ripple" => self.ripples(shapes),
+            "ripple:harmonics" => self.harmonics(shapes),
             "encoder" => self.encoders(model, shapes),
             _ => shapes
                 .par_iter()

@@ -44,12 +44,34 @@ fn ripple(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
     ]
 }
 
+/// Harmonics of the form `ripple:harmonics`.
+const HARMONICS: usize = 6;
+
+/// Forces per unit of `a_1 .. a_6, b_1 .. b_6` of a ripple of six harmonics.
+fn harmonics(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
+    let mut columns = vec![Vec::new(); 2 * HARMONICS];
+    for (sin, cos) in wave {
+        let (mut sin_k, mut cos_k) = (*sin, *cos);
+        for k in 0..HARMONICS {
+            columns[k].push(sin_k);
+            columns[HARMONICS + k].push(cos_k);
+            (sin_k, cos_k) = (sin_k * cos + cos_k * sin, cos_k * cos - sin_k * sin);
+        }
+    }
+    columns
+}
+
 impl FrictionFamily {
     /// Columns of ripples of these periods. A force that depends on position alone is the same with any
     /// contact; what a drive does to it is a few degrees of phase, which the refinement after the
     /// screening mends.
     pub(super) fn ripples(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
         self.sweep(periods, |_, wave| ripple(wave))
+    }
+
+    /// Columns of ripples of six harmonics, see [`FrictionFamily::ripples`].
+    pub(super) fn harmonics(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
+        self.sweep(periods, |_, wave| harmonics(wave))
     }
 
     /// Columns of encoders whose errors have these periods: the inertia of a motion that there is not. The
@@ -120,6 +142,27 @@ mod tests {
                 let share = (dot(&left, &left) / dot(slow, slow)).sqrt();
                 // The friction that is left out.
                 assert!(share < 0.1, "{period}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_columns_of_six_harmonics_are_those_of_the_law() {
+        let made = generate(&Hide::Nothing, 2, Level::Clear).unwrap();
+        let family = FrictionFamily::new(&made.recording, &Options::default()).unwrap();
+        let model = Fitted { terms: vec![0], values: vec![1.0] };
+        let prediction = missing_physics::fit::predict(&family, &model);
+        let at = family.terms().iter().position(|term| term.name == "ripple:harmonics").unwrap();
+        let shapes = family.shapes(at);
+        let main = family.terms().iter().position(|term| term.name == "ripple").unwrap();
+        assert_eq!(shapes.len(), family.shapes(main).len());
+        let last = &shapes[shapes.len() - 2..];
+        let quick = family.harmonics(last);
+        for (quick, shape) in quick.iter().zip(last) {
+            let slow = family.columns(&model, &prediction, at, shape);
+            assert_eq!(slow.len(), quick.len());
+            for (a, b) in quick.iter().zip(&slow).flat_map(|(a, b)| a.iter().zip(b)) {
+                assert!((a - b).abs() < 1e-9, "{a} {b}");
             }
         }
     }

@@ -32,11 +32,12 @@ impl Plants {
 
     /// Adds the smooth forces to what the prediction has set to 0.
     pub(super) fn call_smooth(&mut self) {
-        let Self { effects, smooth, scratch: s, dwell, lanes, .. } = self;
+        let Self { effects, smooth, scratch: s, slope, dwell, lanes, .. } = self;
         let motion = Motion {
             time: &s.time,
             position: &s.position,
             velocity: &s.velocity,
+            acceleration: slope,
             direction: &s.direction,
             level_velocity: &s.velocity,
             dwell,
@@ -53,7 +54,7 @@ impl Plants {
 
     /// Lets the memories say what the level sees.
     pub(super) fn recall(&mut self) {
-        let Self { effects, memories, scratch: s, dwell, past, lanes, .. } = self;
+        let Self { effects, memories, scratch: s, slope, dwell, past, lanes, .. } = self;
         if memories.is_empty() {
             return;
         }
@@ -64,6 +65,7 @@ impl Plants {
             time: &s.time,
             position: &s.position,
             velocity: &s.velocity,
+            acceleration: slope,
             direction: &s.direction,
             level_velocity: &s.velocity,
             dwell,
@@ -100,12 +102,13 @@ impl Plants {
     }
 
     fn sum_level(&mut self, at_rest: bool) {
-        let Self { effects, level, memories, scratch: s, dwell, lanes, .. } = self;
+        let Self { effects, level, memories, scratch: s, slope, dwell, lanes, .. } = self;
         let seen = if memories.is_empty() { &s.velocity } else { &s.level_velocity };
         let motion = Motion {
             time: &s.time,
             position: &s.position,
             velocity: if at_rest { &s.zero } else { &s.velocity },
+            acceleration: if at_rest { &s.zero } else { slope },
             direction: &s.direction,
             level_velocity: if at_rest { &s.zero } else { seen },
             dwell,

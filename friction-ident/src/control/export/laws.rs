@@ -18,7 +18,7 @@ const NONE: Law = Law { smooth: "", level: "", hump: "" };
 
 /// A sum of cosines over the stroke, and more terms of `u`.
 macro_rules! profile {
-    ($count:literal, $amplitudes:literal, $more:literal) => {
+    ($count:literal, $amplitudes:literal, $add:literal) => {
         concat!(
             "{
     static const double c[",
@@ -39,13 +39,70 @@ macro_rules! profile {
         before = now;
         now = next;
     }
-    level += sum",
-            $more,
-            ";
+    ",
+            $add,
+            "
 }"
         )
     };
 }
+
+/// How far `w` has gone, 0..1, from a knot of the free curve to the next one.
+macro_rules! gone {
+    ($from:literal, $to:literal) => {
+        concat!(
+            "fmin(fmax((asinh(fabs(w) / (0.002 * {v_high})) - ",
+            $from,
+            ") / (",
+            $to,
+            " - ",
+            $from,
+            "), 0.0), 1.0)"
+        )
+    };
+}
+
+/// What the free curve has at `w` of what it has at rest, where that is a hump.
+const FREE_SHARE: &str = concat!(
+    "{c_0} > 0.0 ? fmin(fmax((",
+    "{c_0} * (1.0 - ",
+    gone!("0.0", "0.48121182505960347"),
+    ") + {c_1} * (",
+    gone!("0.0", "0.48121182505960347"),
+    " - ",
+    gone!("0.48121182505960347", "1.1947632172871094"),
+    ") + {c_2} * (",
+    gone!("0.48121182505960347", "1.1947632172871094"),
+    " - ",
+    gone!("1.1947632172871094", "2.0947125472611012"),
+    ") + {c_3} * (",
+    gone!("1.1947632172871094", "2.0947125472611012"),
+    " - ",
+    gone!("2.0947125472611012", "2.7764722807237177"),
+    ") + {c_4} * (",
+    gone!("2.0947125472611012", "2.7764722807237177"),
+    " - ",
+    gone!("2.7764722807237177", "3.4023066454805946"),
+    ") + {c_5} * (",
+    gone!("2.7764722807237177", "3.4023066454805946"),
+    " - ",
+    gone!("3.4023066454805946", "4.09462222433053"),
+    ") + {c_6} * (",
+    gone!("3.4023066454805946", "4.09462222433053"),
+    " - ",
+    gone!("4.09462222433053", "4.78756117999381"),
+    ") + {c_7} * (",
+    gone!("4.09462222433053", "4.78756117999381"),
+    " - ",
+    gone!("4.78756117999381", "5.703793585582131"),
+    ") + {c_8} * (",
+    gone!("4.78756117999381", "5.703793585582131"),
+    " - ",
+    gone!("5.703793585582131", "6.907756278980637"),
+    ")",
+    ") / {c_0}, 0.0), 1.0) : 1.0 - ",
+    gone!("0.0", "0.48121182505960347")
+);
 
 /// The law of a term; none where there is none in C.
 pub(super) fn law(term: &Term) -> Option<Law> {
@@ -71,6 +128,26 @@ pub(super) fn law(term: &Term) -> Option<Law> {
             hump: "exp(-pow(fabs(w / {v_s}), {delta}))",
             ..NONE
         },
+        "stribeck:free" => Law {
+            level: "{
+    static const double knots[10] = {0.0, 0.48121182505960347, 1.1947632172871094, 2.0947125472611012,
+        2.7764722807237177, 3.4023066454805946, 4.09462222433053, 4.78756117999381,
+        5.703793585582131, 6.907756278980637};
+    static const double c[9] = {{c_0}, {c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}, {c_7}, {c_8}};
+    const double z = asinh(fabs(w) / (0.002 * {v_high}));
+    double before = 1.0, sum = 0.0;
+    int k;
+    for (k = 0; k < 9; k++) {
+        const double gone = (z - knots[k]) / (knots[k + 1] - knots[k]);
+        const double next = gone < 0.0 ? 0.0 : (gone > 1.0 ? 1.0 : gone);
+        sum += c[k] * (before - next);
+        before = next;
+    }
+    level += bond * sum;
+}",
+            hump: FREE_SHARE,
+            ..NONE
+        },
         "rising-static-friction" => Law {
             level: "level += {dF} * dwell / (dwell + {gamma}) / (1.0 + (w / {v_s}) * (w / {v_s}));",
             ..NONE
@@ -84,16 +161,49 @@ pub(super) fn law(term: &Term) -> Option<Law> {
 }",
             ..NONE
         },
+        "ripple:harmonics" => Law {
+            smooth: "{
+    static const double a[6] = {{a_1}, {a_2}, {a_3}, {a_4}, {a_5}, {a_6}};
+    static const double b[6] = {{b_1}, {b_2}, {b_3}, {b_4}, {b_5}, {b_6}};
+    const double angle = 6.283185307179586 * (x / {l});
+    const double sine = sin(angle), cosine = cos(angle);
+    double sine_k = sine, cosine_k = cosine, sum = 0.0;
+    int k;
+    for (k = 0; k < 6; k++) {
+        const double next = sine_k * cosine + cosine_k * sine;
+        sum += a[k] * sine_k + b[k] * cosine_k;
+        cosine_k = cosine_k * cosine - sine_k * sine;
+        sine_k = next;
+    }
+    force += sum;
+}",
+            ..NONE
+        },
+        "ripple:direction" => Law {
+            smooth: "{
+    const double a = 6.283185307179586 * (x / {l});
+    force += 0.5 * (({a_p} + {a_m}) * sin(a) + ({b_p} + {b_m}) * cos(a));
+}",
+            level: "{
+    const double a = 6.283185307179586 * (x / {l});
+    level += 0.5 * (({a_p} - {a_m}) * sin(a) + ({b_p} - {b_m}) * cos(a));
+}",
+            ..NONE
+        },
         "position-friction" => {
-            Law { level: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", ""), ..NONE }
+            Law { level: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "level += sum;"), ..NONE }
         }
         "position-friction:fine" => Law {
             level: profile!(
                 "20",
                 "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}, {c_7}, {c_8}, {c_9}, {c_10},
         {c_11}, {c_12}, {c_13}, {c_14}, {c_15}, {c_16}, {c_17}, {c_18}, {c_19}, {c_20}",
-                " + {p_1} * (u - 0.5) + {p_2} * (u * u - u + 1.0 / 6.0)"
+                "level += sum + {p_1} * (u - 0.5) + {p_2} * (u * u - u + 1.0 / 6.0);"
             ),
+            ..NONE
+        },
+        "viscous-stroke" => Law {
+            smooth: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "force += sum * v;"),
             ..NONE
         },
         "spring" => Law { smooth: "force += {k} * (x - {x_0});", ..NONE },

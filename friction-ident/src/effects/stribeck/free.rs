@@ -1,0 +1,187 @@
+//! A friction curve of any shape over speed.
+
+use super::{About, Effect, Motion, Parameter, Parameters, Quantity, SHOWS, Slot};
+use crate::simd::{ln, vectorised};
+
+/// Number of knots with a value of their own; the last of all has none.
+const FREE: usize = 9;
+/// `v_0` in units of the top speed: below it the curve is linear in the speed, above in its logarithm.
+const CORNER: f64 = 2e-3;
+/// `asinh(v_k/v_0)` at `v_k` = 0, 0.001, 0.003, 0.008, 0.016, 0.03, 0.06, 0.12, 0.3, 1 times the top speed.
+const KNOTS: [f64; FREE + 1] = [
+    0.0,
+    0.481_211_825_059_603_47,
+    1.194_763_217_287_109_4,
+    2.094_712_547_261_101_2,
+    2.776_472_280_723_717_7,
+    3.402_306_645_480_594_6,
+    4.094_622_224_330_53,
+    4.787_561_179_993_81,
+    5.703_793_585_582_131,
+    6.907_756_278_980_637,
+];
+/// One over the distances of neighbouring knots.
+const SLOPES: [f64; FREE] = {
+    let mut slopes = [0.0; FREE];
+    let mut k = 0;
+    while k < FREE {
+        slopes[k] = 1.0 / (KNOTS[k + 1] - KNOTS[k]);
+        k += 1;
+    }
+    slopes
+};
+/// Speed, in units of `v_0`, from which nothing changes any more: beyond the last knot.
+const BEYOND: f64 = 1e3;
+
+/// `sum_k c_k hat_k(|v|)`, piecewise linear in `asinh(|v|/v_0)`: what a Stribeck hump of no known form, a second
+/// hump, or a rise with the logarithm of the speed look like. It ends at 0, so that it does not compete with `coulomb`.
+#[derive(Clone, Copy, Debug)]
+pub struct Free;
+
+const fn value(name: &'static str, default: f64) -> Parameter {
+    Parameter::signed(
+        name,
+        "level at knot k beyond that at v_high",
+        Quantity::Force,
+        200.0,
+        default,
+    )
+}
+
+static ABOUT: About = About {
+    name: "stribeck:free",
+    title: "Stribeck effect, free curve",
+    equation: "sum_{k=0..8} c_k hat_k(|v|) s, linear in asinh(|v|/(0.002 v_high)) between 0, 0.001, 0.003, 0.008, \
+               0.016, 0.03, 0.06, 0.12, 0.3 and 1 times v_high, 0 from there on",
+    parameters: &[
+        value("c_0", 4.0),
+        value("c_1", 4.0),
+        value("c_2", 4.0),
+        value("c_3", 3.8),
+        value("c_4", 3.4),
+        value("c_5", 2.6),
+        value("c_6", 1.2),
+        value("c_7", 0.4),
+        value("c_8", 0.1),
+        Parameter::fixed(
+            "v_high",
+            "speed at which the curve ends",
+            Quantity::Velocity,
+            (1e-6, 10.0),
+            0.05,
+        ),
+    ],
+    slots: &[Slot::FrictionLevel],
+    shows: SHOWS,
+    reference: "R. Stribeck, Zeitschrift des VDI 46, 1902 (measured curves)",
+};
+
+impl Effect for Free {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
+        let values = std::array::from_fn(|k| p.get(k));
+        curve(values, p.get(FREE), m.level_velocity, m.bond, level);
+    }
+
+    /// What the curve has left of its value at rest, where that is a hump.
+    fn hump(&self, p: Parameters<'_>, level_velocity: &[f64], share: &mut [f64]) -> bool {
+        for (i, share) in share.iter_mut().enumerate() {
+            let (hats, rest) = (hats(level_velocity[i], p.get(FREE)[i]), p.get(0)[i]);
+            let sum: f64 = hats.iter().enumerate().map(|(k, hat)| p.get(k)[i] * hat).sum();
+            *share = if rest > 0.0 { (sum / rest).clamp(0.0, 1.0) } else { hats[0] };
+        }
+        true
+    }
+}
+
+/// Weights of the values at a speed.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn hats(velocity: f64, high: f64) -> [f64; FREE] {
+    let x = (velocity.abs() / (CORNER * high)).min(BEYOND);
+    // asinh x.
+    let z = ln(x + (x * x + 1.0).sqrt());
+    let (mut hats, mut before) = ([0.0; FREE], 1.0);
+    for k in 0..FREE {
+        // How far the speed has gone from knot k to the next one. Differences of these are exact at the ends.
+        let next = ((z - KNOTS[k]) * SLOPES[k]).clamp(0.0, 1.0);
+        hats[k] = before - next;
+        before = next;
+    }
+    hats
+}
+
+vectorised! {
+    fn curve(values: [&[f64]; FREE], high: &[f64], velocity: &[f64], bond: &[f64], level: &mut [f64]) {
+        let n = level.len();
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = values;
+        let (c0, c1, c2, c3, c4) = (&c0[..n], &c1[..n], &c2[..n], &c3[..n], &c4[..n]);
+        let (c5, c6, c7, c8) = (&c5[..n], &c6[..n], &c7[..n], &c8[..n]);
+        let (high, velocity, bond) = (&high[..n], &velocity[..n], &bond[..n]);
+        for i in 0..n {
+            let h = hats(velocity[i], high[i]);
+            let low = c0[i] * h[0] + c1[i] * h[1] + c2[i] * h[2] + c3[i] * h[3];
+            let top = c4[i] * h[4] + c5[i] * h[5] + c6[i] * h[6] + c7[i] * h[7] + c8[i] * h[8];
+            level[i] += bond[i] * (low + top);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::testing::{Point, along_and_simulated, level};
+    use super::*;
+
+    const VALUES: [f64; FREE + 1] = [5.0, 4.0, -1.0, 2.0, 3.0, 0.5, -0.7, 1.5, 0.3, 0.2];
+    const SHARES: [f64; FREE + 1] = [0.0, 1e-3, 3e-3, 8e-3, 0.016, 0.03, 0.06, 0.12, 0.3, 1.0];
+
+    #[test]
+    fn it_has_its_values_at_the_knots_and_none_at_the_top_speed_and_beyond() {
+        for (k, share) in SHARES.iter().enumerate().take(FREE) {
+            for v in [0.2 * share, -0.2 * share] {
+                let found = level(&Free, &VALUES, Point::at(0.0, v));
+                assert!((found - VALUES[k]).abs() < 1e-12, "{k}: {found}");
+            }
+        }
+        assert!(level(&Free, &VALUES, Point::at(0.0, 0.2)).abs() < 1e-12);
+        assert_eq!(level(&Free, &VALUES, Point::at(0.0, -0.21)), 0.0);
+        assert_eq!(level(&Free, &VALUES, Point::at(0.0, 3e9)), 0.0);
+    }
+
+    #[test]
+    fn it_is_linear_in_the_inverse_hyperbolic_sine_between_the_knots() {
+        for (k, pair) in SHARES.windows(2).enumerate() {
+            let asinh = |share: f64| (share / CORNER).asinh();
+            for part in [0.1, 0.5, 0.8] {
+                let z = asinh(pair[0]) + part * (asinh(pair[1]) - asinh(pair[0]));
+                let v = 0.2 * CORNER * z.sinh();
+                let end = if k + 1 < FREE { VALUES[k + 1] } else { 0.0 };
+                let exact = VALUES[k] + part * (end - VALUES[k]);
+                assert!((level(&Free, &VALUES, Point::at(0.0, v)) - exact).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn it_follows_the_remembered_velocity_and_the_bond() {
+        let point = Point { level_velocity: 0.0, bond: 0.5, ..Point::at(0.0, 0.1) };
+        assert_eq!(level(&Free, &VALUES, point), 2.5);
+        let mut share = [0.0; 3];
+        let p = super::super::super::broadcast(&VALUES, 3);
+        assert!(Free.hump(Parameters::new(&p, 3), &[0.0, 0.2e-3, 0.6e-3], &mut share));
+        assert!((share[1] - 0.8).abs() < 1e-12);
+        assert_eq!((share[0], share[2]), (1.0, 0.0));
+    }
+
+    #[test]
+    fn the_force_along_a_simulated_motion_is_the_one_that_made_it() {
+        // Knots that are passed in no less than some ten steps.
+        let flat = [("c_0", 3.0), ("c_1", 3.0), ("c_2", 3.0), ("c_3", 3.0)];
+        let bent = [("c_4", 3.0), ("c_5", 2.0), ("c_6", -1.0), ("c_7", 0.5), ("v_high", 1.0)];
+        let left = along_and_simulated(&[("stribeck:free", &[&flat[..], &bent].concat())], None);
+        assert!(left < 0.03, "{left}");
+    }
+}
