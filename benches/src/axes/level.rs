@@ -146,9 +146,9 @@ mod tests {
     #[test]
     fn a_recording_follows_from_case_level_and_seed() {
         let case = case("table", "stribeck");
-        let recorded = |level, seed| super::recorded(&case, level, seed);
-        assert_eq!(recorded(Level::Clear, 3), recorded(Level::Clear, 3));
-        let positions = |level, seed| recorded(level, seed).map(|found| found.run.position);
+        let make = |level, seed| recorded(&case, level, seed);
+        assert_eq!(make(Level::Clear, 3), make(Level::Clear, 3));
+        let positions = |level, seed| make(level, seed).map(|found| found.run.position);
         assert_ne!(positions(Level::Clear, 3), positions(Level::Clear, 5));
         assert_ne!(positions(Level::Clear, 3), positions(Level::Moderate, 3));
     }

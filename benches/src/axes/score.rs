@@ -33,7 +33,7 @@ pub fn row(kind: &str, hidden: &str, level: &str, outcomes: &[&Outcome]) -> Stri
     visible.sort_unstable_by(f64::total_cmp);
     let visible = visible.get(visible.len() / 2).copied().unwrap_or(0.0);
     let runs = outcomes.len();
-    let time = outcomes.iter().map(|o| o.wall_s).sum::<f64>() / runs.max(1) as f64;
+    let time = outcomes.iter().fold(0.0, |sum, o| sum + o.wall_s) / runs.max(1) as f64;
     format!(
         "| {kind} | {hidden} | {level} | {visible:.1} | {runs} | {right} | {answers} | {extra} | {size} | {time:.2} |"
     )
