@@ -8,6 +8,11 @@ use super::FrictionFamily;
 use crate::model::Model;
 use crate::predictor::{Predictor, Wave};
 
+/// Effects with a period along the stroke.
+const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
+/// Fewest periods in a stroke: fewer are no ripple but a profile.
+const LEAST_PERIODS: f64 = 3.0;
+
 /// The predictor of a recording with the instants that it counts.
 #[derive(Clone, Debug)]
 pub(super) struct OneAhead {
@@ -37,9 +42,11 @@ impl FrictionFamily {
     /// Shapes of a term to begin with: a fit finds the rest of the way.
     fn few_shapes(&self, term: usize) -> Vec<Vec<f64>> {
         let about = &self.terms[term];
-        if ["ripple", "encoder"].contains(&about.name.as_str()) {
+        if PERIODIC.contains(&about.name.as_str()) {
             // A fit moves a period by more than the half of a line that lies between two of these.
-            return self.shapes(term).into_iter().step_by(2).collect();
+            let longest = (self.stroke.1 - self.stroke.0) / LEAST_PERIODS;
+            let short = |shape: &Vec<f64>| shape[0] <= longest;
+            return self.shapes(term).into_iter().step_by(2).filter(short).collect();
         }
         let shapes: Vec<&Parameter> =
             about.parameters.iter().filter(|p| p.role == Role::Shape).collect();
@@ -56,17 +63,6 @@ impl FrictionFamily {
             };
             points.iter().flat_map(each).collect()
         })
-    }
-
-    fn flexible_form(&self, term: usize) -> Option<usize> {
-        let name = match self.terms[term].name.as_str() {
-            "stribeck" | "stribeck:gaussian" | "stribeck:exponential" => "stribeck:free",
-            "presliding" | "presliding:dahl" | "presliding:maxwell-slip" => "presliding:free",
-            "position-friction" => "position-friction:fine",
-            "ripple" => "ripple:harmonics",
-            _ => return None,
-        };
-        self.terms.iter().position(|term| term.name == name)
     }
 }
 
@@ -99,6 +95,9 @@ impl Ahead for FrictionFamily {
     }
 
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
+        if let Some(trials) = self.two_masses(model, term) {
+            return trials;
+        }
         let about = &self.terms[term];
         let first = model.values.len();
         let amplitude = |k: &usize| about.parameters[*k].role == Role::Amplitude;
@@ -112,10 +111,10 @@ impl Ahead for FrictionFamily {
 
     fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Vec<Vec<Vec<f64>>>> {
         let name = self.terms[term].name.as_str();
-        if !["ripple", "encoder"].contains(&name) {
+        if !PERIODIC.contains(&name) {
             return None;
         }
-        let wave = if name == "ripple" { Wave::Force } else { Wave::Sensor };
+        let wave = if name != "encoder" { Wave::Force } else { Wave::Sensor };
         let period = |trial: &Trial| trial.model.values.last().copied().unwrap_or(1.0);
         let periods: Vec<f64> = trials.iter().map(period).collect();
         // The fundamental chooses the period; harmonics follow when it is looked at as it is.
@@ -124,9 +123,11 @@ impl Ahead for FrictionFamily {
     }
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
-        let to = self.flexible_form(term)?;
-        let values: Vec<f64> = self.terms[to].parameters.iter().map(|p| p.start).collect();
-        Some(model.without(self, term).with(to, &values))
+        self.in_flexible_form(model, term)
+    }
+
+    fn is_candidate(&self, term: usize) -> bool {
+        FrictionFamily::is_candidate(self, term)
     }
 }
 

@@ -8,6 +8,7 @@ pub mod compare;
 mod coordinates;
 pub mod experiment;
 mod filter;
+mod forms;
 mod full_rate;
 mod generic;
 mod limits;
@@ -90,10 +91,7 @@ impl FrictionFamily {
             .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
         let main = options.library.effects().iter().copied().filter(|effect| effect.suits(axis));
         let effects: Vec<&'static dyn Effect> = main
-            .flat_map(|effect| {
-                let forms = effect.forms().iter().copied().filter(|form| form.shows_in_force());
-                std::iter::once(effect).chain(forms)
-            })
+            .flat_map(|effect| std::iter::once(effect).chain(effect.forms().iter().copied()))
             .collect();
         let limits = limits::Limits::of(&prepared, axis, stroke);
         let mut terms = vec![limits.mass()];

@@ -40,6 +40,11 @@ pub trait Ahead: Sync {
     /// Ways to begin with a term beside a model.
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;
 
+    /// Whether a term is tried by itself, not only as another form of one that is there.
+    fn is_candidate(&self, _term: usize) -> bool {
+        true
+    }
+
     /// Changes of the errors by each amplitude of each of `trials`, to first order, where the family has a way
     /// that is much cheaper than errors of the trials: the few best of them are then looked at as they are.
     fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Vec<Vec<Vec<f64>>>> {

@@ -40,7 +40,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let candidates: Vec<usize> = (0..family.terms().len())
         .filter(|&term| {
             let main = family.form_of(term).unwrap_or(term);
-            !family.terms()[term].always && ![term, main].iter().any(|t| excluded.contains(t))
+            !family.terms()[term].always
+                && ahead.is_candidate(term)
+                && ![term, main].iter().any(|t| excluded.contains(t))
         })
         .collect();
     let stop = || {
@@ -48,7 +50,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
         asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
     };
     let thresholds = settings.thresholds;
-    let mut search = Search::new(family, ahead, thresholds, candidates, &stop, observer);
+    let search = Search::new(family, ahead, thresholds, candidates, &stop, observer);
     let base = search.base(start.fit.model);
     let found = search.run(base, settings.most);
     observer.event(&Event::Finishing);

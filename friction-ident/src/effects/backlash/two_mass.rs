@@ -45,12 +45,6 @@ impl Effect for TwoMass {
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
     }
-
-    /// Where the load is in the gap hangs on a force much smaller than the error of a force along a measured
-    /// motion: the main form stands for this one there.
-    fn shows_in_force(&self) -> bool {
-        false
-    }
 }
 
 /// Both ends of the gap over a step. At each the mean force along an even motion is exact, whenever in the

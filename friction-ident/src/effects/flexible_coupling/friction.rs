@@ -69,12 +69,6 @@ impl Effect for WithFriction {
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
     }
-
-    /// A force along a measured motion takes that for the motion of the mass, and the main form stands for
-    /// this one there.
-    fn shows_in_force(&self) -> bool {
-        false
-    }
 }
 
 /// Spring and damper over a step: the trapezoidal rule.

@@ -1,0 +1,199 @@
+//! Forms of effects one sample ahead: which one is more flexible, and where it begins.
+
+use missing_physics::ahead::Trial;
+use missing_physics::{Fitted, ModelFamily};
+
+use super::FrictionFamily;
+
+/// Each form and the more flexible one that takes its place before another effect is named.
+const FLEXIBLE: [(&str, &str); 15] = [
+    ("stribeck", "stribeck:free"),
+    ("stribeck:gaussian", "stribeck:free"),
+    ("stribeck:exponential", "stribeck:free"),
+    ("presliding", "presliding:free"),
+    ("presliding:static", "presliding:free"),
+    ("presliding:dahl", "presliding:free"),
+    ("presliding:lugre", "presliding:free"),
+    ("presliding:maxwell-slip", "presliding:free"),
+    ("position-friction", "position-friction:fine"),
+    ("ripple", "ripple:harmonics"),
+    ("load-friction", "load-friction:both"),
+    ("load-friction:inertia", "load-friction:both"),
+    ("actuator-lag", "actuator-lag:second-order"),
+    ("flexible-coupling", "flexible-coupling:friction"),
+    ("backlash", "backlash:two-mass"),
+];
+/// Forms that only take the place of another one: alone they would fit anything a little.
+const ONLY_FLEXIBLE: [&str; 6] = [
+    "stribeck:free",
+    "presliding:free",
+    "position-friction:fine",
+    "ripple:harmonics",
+    "load-friction:both",
+    "actuator-lag:second-order",
+];
+/// Share of the mass that a second body begins with.
+const SECOND_MASS: f64 = 0.5;
+/// Shares of the friction that it is tried with.
+const SHARES: [f64; 2] = [0.3, 0.55];
+/// Trial frequencies of a coupling, from the lowest, Hz, to this share of the sampling frequency.
+const FREQUENCIES: (usize, f64, f64) = (10, 3.0, 0.25);
+/// Trial gaps of a backlash, from this many standard deviations of the position to a share of the stroke.
+const GAPS: (usize, f64, f64) = (16, 4.0, 0.01);
+/// Frequency of the contact at the end of a gap, Hz, and damping of contact and coupling.
+const CONTACT: f64 = 150.0;
+const DAMPING: (f64, f64) = (0.1, 0.05);
+
+impl FrictionFamily {
+    /// Whether a term is tried by itself, not only in the place of another form.
+    pub(super) fn is_candidate(&self, term: usize) -> bool {
+        !ONLY_FLEXIBLE.contains(&self.terms[term].name.as_str())
+    }
+
+    /// The model with a term in its more flexible form, beginning where it is.
+    pub(super) fn in_flexible_form(&self, model: &Fitted, term: usize) -> Option<Fitted> {
+        let name = self.terms[term].name.as_str();
+        let to = FLEXIBLE.iter().find(|(from, _)| *from == name)?.1;
+        let to = self.terms.iter().position(|term| term.name == to)?;
+        let position = model.terms.iter().position(|t| *t == term)?;
+        let old = &model.values[model.range(self, position)];
+        let known = |name: &str| {
+            let parameters = &self.terms[term].parameters;
+            parameters.iter().position(|p| p.name == name).map(|k| old[k])
+        };
+        let mut base = model.without(self, term);
+        let parameters = &self.terms[to].parameters;
+        let mut values: Vec<f64> = parameters
+            .iter()
+            .map(|p| known(&p.name).unwrap_or(if p.lower < 0.0 { 0.0 } else { p.start }))
+            .collect();
+        let mut set = |name: &str, value: f64| {
+            if let Some(k) = parameters.iter().position(|p| p.name == name) {
+                values[k] = value.clamp(parameters[k].lower, parameters[k].upper);
+            }
+        };
+        match self.terms[to].name.as_str() {
+            "stribeck:free" => {
+                let law = |v: f64| hump(name, known("dF"), known("v_s"), known("delta"), v);
+                let end = law(self.top_speed);
+                for (k, share) in KNOTS.iter().enumerate() {
+                    set(&format!("c_{k}"), law(share * self.top_speed) - end);
+                }
+                self.change(&mut base, "coulomb", "F_C", |level| level + end);
+            }
+            "presliding:free" => {
+                let level = self.value(&base, "coulomb", "F_C").unwrap_or(1.0);
+                if let Some(stiffness) = known("k_t") {
+                    set("d", 1.5 * level / stiffness);
+                }
+            }
+            "load-friction:both" => {
+                set("mu", known("mu").unwrap_or(0.0));
+                set("c", known("c").unwrap_or(0.0));
+            }
+            "actuator-lag:second-order" => set("zeta", 1.0),
+            "flexible-coupling:friction" => {
+                let share = SHARES[0];
+                let level = self.value(&base, "coulomb", "F_C").unwrap_or(0.0);
+                let damping = self.value(&base, "viscous", "F_v").unwrap_or(0.0);
+                set("F_L", share * level);
+                set("d_L", share * damping);
+                self.change(&mut base, "coulomb", "F_C", |level| level * (1.0 - share));
+                self.change(&mut base, "viscous", "F_v", |damping| damping * (1.0 - share));
+            }
+            "backlash:two-mass" => {
+                let gap = known("b").unwrap_or(1e-5);
+                let all = self.second_bodies(&base, to, &[vec![("b", gap), ("zeta", DAMPING.0)]]);
+                return all.into_iter().next().map(|trial| trial.model);
+            }
+            _ => {}
+        }
+        Some(base.with(to, &values))
+    }
+
+    /// Ways to begin with a second body, where the term is one.
+    pub(super) fn two_masses(&self, model: &Fitted, term: usize) -> Option<Vec<Trial>> {
+        let sampling = 1.0 / self.recording.interval();
+        let spread = |(count, low, high): (usize, f64, f64)| -> Vec<f64> {
+            let part = |k: usize| k as f64 / (count - 1) as f64;
+            (0..count).map(|k| low * (high / low).powf(part(k))).collect()
+        };
+        let shapes: Vec<Vec<(&str, f64)>> = match self.terms[term].name.as_str() {
+            "flexible-coupling:friction" | "flexible-coupling:load" => {
+                let (count, low, share) = FREQUENCIES;
+                let line = spread((count, low, (share * sampling).max(2.0 * low)));
+                line.iter().map(|f| vec![("f", *f), ("zeta", DAMPING.1)]).collect()
+            }
+            "backlash:two-mass" => {
+                let (count, deviations, share) = GAPS;
+                let least = deviations * self.ahead.as_ref()?.predictor.noise().position;
+                let most = (share * (self.stroke.1 - self.stroke.0)).max(2.0 * least);
+                let line = spread((count, least, most));
+                line.iter().map(|b| vec![("b", *b), ("zeta", DAMPING.0)]).collect()
+            }
+            _ => return None,
+        };
+        Some(self.second_bodies(model, term, &shapes))
+    }
+
+    fn second_bodies(&self, model: &Fitted, term: usize, shapes: &[Vec<(&str, f64)>]) -> Vec<Trial> {
+        let parameters = &self.terms[term].parameters;
+        let mass = model.values.first().copied().unwrap_or(1.0);
+        let level = self.value(model, "coulomb", "F_C").unwrap_or(0.0);
+        let damping = self.value(model, "viscous", "F_v").unwrap_or(0.0);
+        let reduced = mass * SECOND_MASS * (1.0 - SECOND_MASS);
+        let stiffness = (std::f64::consts::TAU * CONTACT).powi(2) * reduced;
+        let mut trials = Vec::new();
+        for share in SHARES {
+            for shape in shapes {
+                let mut base = model.clone();
+                base.values[0] = mass * (1.0 - SECOND_MASS);
+                self.change(&mut base, "coulomb", "F_C", |level| level * (1.0 - share));
+                self.change(&mut base, "viscous", "F_v", |damping| damping * (1.0 - share));
+                let value = |name: &str| match name {
+                    "m_L" => Some(mass * SECOND_MASS),
+                    "F_L" => Some(level * share),
+                    "d_L" => Some(damping * share),
+                    "k" => Some(stiffness),
+                    _ => shape.iter().find(|(known, _)| *known == name).map(|(_, value)| *value),
+                };
+                let values = parameters.iter().map(|p| value(&p.name).unwrap_or(p.start).clamp(p.lower, p.upper));
+                let values: Vec<f64> = values.collect();
+                trials.push(Trial { model: base.with(term, &values), amplitudes: Vec::new() });
+            }
+        }
+        trials
+    }
+
+    /// Index of a parameter of a term in a model's values.
+    fn place(&self, model: &Fitted, term: &str, parameter: &str) -> Option<usize> {
+        let position = model.terms.iter().position(|t| self.terms[*t].name == term)?;
+        let parameters = &self.terms[model.terms[position]].parameters;
+        let k = parameters.iter().position(|p| p.name == parameter)?;
+        Some(model.range(self, position).start + k)
+    }
+
+    fn value(&self, model: &Fitted, term: &str, parameter: &str) -> Option<f64> {
+        self.place(model, term, parameter).map(|k| model.values[k])
+    }
+
+    fn change(&self, model: &mut Fitted, term: &str, parameter: &str, by: impl Fn(f64) -> f64) {
+        if let Some(k) = self.place(model, term, parameter) {
+            model.values[k] = by(model.values[k]);
+        }
+    }
+}
+
+/// Knots of `stribeck:free` in shares of the top speed.
+const KNOTS: [f64; 9] = [0.0, 0.001, 0.003, 0.008, 0.016, 0.03, 0.06, 0.12, 0.3];
+
+/// Level of a Stribeck hump of any form at a speed.
+fn hump(form: &str, height: Option<f64>, speed: Option<f64>, exponent: Option<f64>, v: f64) -> f64 {
+    let ratio = v / speed.unwrap_or(1e-3);
+    let share = match form {
+        "stribeck:gaussian" => (-ratio * ratio).exp(),
+        "stribeck:exponential" => (-ratio.powf(exponent.unwrap_or(1.0))).exp(),
+        _ => 1.0 / (1.0 + ratio * ratio),
+    };
+    height.unwrap_or(0.0) * share
+}
