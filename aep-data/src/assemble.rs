@@ -130,7 +130,10 @@ fn recording(
     let recording = Recording::with_segments(name, time, channels, segment)
         .map_err(|error| located(error, picks, table, path))?;
     check_interval(recording.interval()).map_err(|problem| DataError::new(path, problem))?;
-    let recording = recording.with_hold(mapping.hold.unwrap_or_default());
+    let recording = match mapping.hold {
+        Some(hold) => recording.with_hold(hold),
+        None => recording,
+    };
     let Some(enabled) = enabled.filter(|enabled| enabled.contains(&0.0)) else {
         return Ok((recording, 0));
     };

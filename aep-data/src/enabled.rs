@@ -34,5 +34,5 @@ pub(crate) fn switched_on(
     let segment = (0i64..).zip(&runs).flat_map(|(number, run)| run.clone().map(move |_| number));
     let (time, segment) = (kept(recording.time()), segment.collect());
     let left = Recording::with_segments(recording.name(), time, channels, segment)?;
-    Ok(left.with_hold(recording.hold()))
+    Ok(left.with_hold_of(recording))
 }

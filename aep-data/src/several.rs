@@ -75,5 +75,5 @@ fn joined(
         (0i64..).zip(pieces).flat_map(|(number, piece)| piece.clone().map(move |_| number));
     let name = format!("{}, {}", first.name(), next.name());
     let recording = Recording::with_segments(name, time, channels, segment.collect())?;
-    Ok(recording.with_hold(first.hold()))
+    Ok(recording.with_hold_of(first))
 }

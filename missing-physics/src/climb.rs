@@ -35,7 +35,7 @@ const IN_TIME: f64 = 0.005;
 pub(crate) struct Search<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
     settings: &'a Settings<'a>,
-    observer: &'a mut dyn Observer,
+    observer: &'a mut (dyn Observer + Send),
     started: Instant,
     split: Split,
     /// 1 on fitted points, 0 on held-out ones.
@@ -54,7 +54,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         settings: &'a Settings<'a>,
         base: &[usize],
         excluded: Vec<usize>,
-        observer: &'a mut dyn Observer,
+        observer: &'a mut (dyn Observer + Send),
     ) -> Self {
         let started = Instant::now();
         let points = family.target().len();

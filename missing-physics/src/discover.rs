@@ -167,12 +167,12 @@ pub fn terms<F: ModelFamily + ?Sized>(
 pub fn discover<F: ModelFamily + ?Sized>(
     family: &F,
     settings: &Settings<'_>,
-    observer: &mut dyn Observer,
+    observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {
     let base = terms(family, &settings.base)?;
     let excluded = terms(family, &settings.exclude)?;
     if let Some(one_ahead) = family.ahead() {
-        return Ok(ahead::discover(family, one_ahead, settings, (&base, &excluded), observer));
+        return Ok(ahead::discover(family, &*one_ahead, settings, (&base, &excluded), observer));
     }
     Ok(Search::new(family, settings, &base, excluded, observer).run())
 }
@@ -185,7 +185,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
 pub fn suggest<F: ModelFamily + ?Sized>(
     family: &F,
     settings: &Settings<'_>,
-    observer: &mut dyn Observer,
+    observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {
     let once = Settings {
         base: settings.base.clone(),

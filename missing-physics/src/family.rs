@@ -194,7 +194,12 @@ pub trait ModelFamily: Sync {
     }
 
     /// The recording one sample ahead, where the family can predict so.
-    fn ahead(&self) -> Option<&dyn crate::ahead::Ahead> {
+    fn ahead(&self) -> Option<Box<dyn crate::ahead::Ahead + '_>> {
+        None
+    }
+
+    /// Parts of a long recording one sample ahead, for a search; nothing where the whole is short enough.
+    fn ahead_in_part(&self) -> Option<Box<dyn crate::ahead::Ahead + '_>> {
         None
     }
 

@@ -93,7 +93,8 @@ pub struct Recording {
     time: Vec<f64>,
     channels: Vec<Channel>,
     segments: Vec<Range<usize>>,
-    hold: Hold,
+    /// Nothing where nobody stated it.
+    hold: Option<Hold>,
 }
 
 impl Recording {
@@ -136,13 +137,13 @@ impl Recording {
         for range in &segments {
             check_increasing(&time, range)?;
         }
-        Ok(Self { name: name.into(), time, channels, segments, hold: Hold::default() })
+        Ok(Self { name: name.into(), time, channels, segments, hold: None })
     }
 
     /// Says how the input acts between samples.
     #[must_use]
     pub fn with_hold(mut self, hold: Hold) -> Self {
-        self.hold = hold;
+        self.hold = Some(hold);
         self
     }
 
@@ -178,7 +179,19 @@ impl Recording {
 
     /// How the input acts between samples.
     pub fn hold(&self) -> Hold {
+        self.hold.unwrap_or_default()
+    }
+
+    /// How the input acts between samples, where that was stated.
+    pub fn known_hold(&self) -> Option<Hold> {
         self.hold
+    }
+
+    /// The same with what `other` states about its input.
+    #[must_use]
+    pub fn with_hold_of(mut self, other: &Self) -> Self {
+        self.hold = other.hold;
+        self
     }
 
     /// The channel called `name`, if there is one.

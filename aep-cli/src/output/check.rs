@@ -39,9 +39,10 @@ fn overview(loaded: &Loaded, check: &DataCheck) -> String {
         pieces => format!(" in {pieces} segments"),
     };
     let layout = loaded.layout.map(|name| format!("; recognised as {name}")).unwrap_or_default();
-    let hold = match loaded.recording.hold() {
-        Hold::ZeroOrder => "; the force is a command, held between samples",
-        Hold::Sampled => "; the force is taken as sampled (see --hold)",
+    let hold = match loaded.recording.known_hold() {
+        Some(Hold::ZeroOrder) => "; the force is a command, held between samples",
+        Some(Hold::Sampled) => "; the force is taken as sampled",
+        None => "",
     };
     format!(
         "{} samples{pieces} over {}, one every {}{layout}{hold}",

@@ -1,7 +1,9 @@
 //! The family one sample ahead: its terms as plants, the predictor's errors as the engine wants them.
 
+use std::sync::{Arc, Mutex};
+
 use aep_core::Scale;
-use missing_physics::ahead::{Ahead, Trial};
+use missing_physics::ahead::{Ahead, Columns, Trial};
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
@@ -10,6 +12,10 @@ use crate::predictor::{Predictor, Wave};
 
 /// Effects with a period along the stroke.
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
+/// Samples of a search: more are thinned, and what is found is compared once more on all.
+const MOST_SAMPLES: usize = 12_000;
+/// Settings whose responses are kept.
+const KEPT: usize = 4;
 /// Fewest periods in a stroke: fewer are no ripple but a profile.
 const LEAST_PERIODS: f64 = 3.0;
 
@@ -18,27 +24,65 @@ const LEAST_PERIODS: f64 = 3.0;
 pub(super) struct OneAhead {
     pub predictor: Predictor,
     instants: Vec<(f64, usize)>,
+    /// The responses that were asked for last.
+    responses: Arc<Mutex<Vec<Responses>>>,
+}
+
+/// What periodic disturbances do at a setting.
+#[derive(Clone, Debug)]
+struct Responses {
+    setting: usize,
+    wave: Wave,
+    periods: Vec<f64>,
+    columns: Columns,
 }
 
 impl OneAhead {
     /// Gains for a plant of about `mass` and `damping`; nothing where the recording is too short.
     pub fn new(recording: &Recording, mass: f64, damping: f64) -> Option<Self> {
-        let predictor = Predictor::new(recording, mass, damping)?;
-        let piece = |k: usize| recording.segments().partition_point(|s| s.end <= k);
+        Some(Self::of(Predictor::new(recording, mass, damping)?, recording))
+    }
+
+    /// The same of a part of the recording, where it is long: pieces spread over all of it.
+    pub fn thinned(&self, recording: &Recording) -> Option<Self> {
+        Some(Self::of(self.predictor.thinned(MOST_SAMPLES)?, recording))
+    }
+
+    fn of(predictor: Predictor, recording: &Recording) -> Self {
+        let piece = |k: usize| predictor.piece(k);
         let instants =
             predictor.counted().iter().map(|&k| (recording.time()[k], piece(k))).collect();
-        Some(Self { predictor, instants })
+        Self { predictor, instants, responses: Arc::default() }
+    }
+
+    /// Responses to periodic disturbances: they do not depend on the model, so that those of the last settings are
+    /// kept.
+    fn responses(&self, setting: usize, wave: Wave, periods: Vec<f64>) -> Columns {
+        let setting = setting % (self.predictor.settings() / 2);
+        let lock = || self.responses.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let same = |kept: &&Responses| {
+            (kept.setting, kept.wave) == (setting, wave) && kept.periods == periods
+        };
+        if let Some(kept) = lock().iter().find(same) {
+            return kept.columns.clone();
+        }
+        let columns = Arc::new(self.predictor.responses(setting, wave, &periods));
+        let mut kept = lock();
+        if kept.len() >= KEPT {
+            kept.remove(0);
+        }
+        kept.push(Responses { setting, wave, periods, columns: columns.clone() });
+        columns
     }
 }
 
-impl FrictionFamily {
-    fn one_ahead(&self) -> &OneAhead {
-        match &self.ahead {
-            Some(ahead) => ahead,
-            None => unreachable!("asked only where there is one"),
-        }
-    }
+/// The family with one of its predictors.
+pub(super) struct View<'a> {
+    pub family: &'a FrictionFamily,
+    pub ahead: &'a OneAhead,
+}
 
+impl FrictionFamily {
     /// Shapes of a term to begin with: a fit finds the rest of the way.
     fn few_shapes(&self, term: usize) -> Vec<Vec<f64>> {
         let about = &self.terms[term];
@@ -53,6 +97,7 @@ impl FrictionFamily {
         let counts: &[usize] = match shapes.len() {
             1 => &[12],
             2 if about.name == "flexible-coupling" => &[12, 1],
+            2 if about.name == "presliding:maxwell-slip" => &[6, 1],
             2 => &[6, 3],
             _ => &[5, 3, 2],
         };
@@ -66,23 +111,23 @@ impl FrictionFamily {
     }
 }
 
-impl Ahead for FrictionFamily {
+impl Ahead for View<'_> {
     fn settings(&self) -> usize {
-        self.one_ahead().predictor.settings()
+        self.ahead.predictor.settings()
     }
 
     fn expected(&self, setting: usize) -> f64 {
-        self.one_ahead().predictor.expected(setting)
+        self.ahead.predictor.expected(setting)
     }
 
     fn budget(&self) -> f64 {
-        self.one_ahead().predictor.budget()
+        self.ahead.predictor.budget()
     }
 
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {
         let plants: Result<Vec<(Model, usize)>, _> =
-            models.iter().map(|(fitted, setting)| Ok((self.model(fitted)?, *setting))).collect();
-        let ahead = self.one_ahead();
+            models.iter().map(|(fitted, setting)| Ok((self.family.model(fitted)?, *setting))).collect();
+        let ahead = self.ahead;
         plants.map_or_else(
             // A combination that is no plant predicts nothing.
             |_: crate::model::ModelError| vec![vec![f64::MAX; ahead.instants.len()]; models.len()],
@@ -91,14 +136,14 @@ impl Ahead for FrictionFamily {
     }
 
     fn instants(&self) -> &[(f64, usize)] {
-        &self.one_ahead().instants
+        &self.ahead.instants
     }
 
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
-        if let Some(trials) = self.two_masses(model, term) {
+        if let Some(trials) = self.family.two_masses(model, term) {
             return trials;
         }
-        let about = &self.terms[term];
+        let about = &self.family.terms[term];
         let first = model.values.len();
         let amplitude = |k: &usize| about.parameters[*k].role == Role::Amplitude;
         let free: Vec<usize> = (0..about.parameters.len()).filter(amplitude).collect();
@@ -106,28 +151,27 @@ impl Ahead for FrictionFamily {
             model: model.with(term, &missing_physics::shapes::assemble(about, shape, &[])),
             amplitudes: free.iter().map(|k| (first + k, about.parameters[*k].start)).collect(),
         };
-        self.few_shapes(term).iter().map(trial).collect()
+        self.family.few_shapes(term).iter().map(trial).collect()
     }
 
-    fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Vec<Vec<Vec<f64>>>> {
-        let name = self.terms[term].name.as_str();
+    fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Columns> {
+        let name = self.family.terms[term].name.as_str();
         if !PERIODIC.contains(&name) {
             return None;
         }
-        let wave = if name != "encoder" { Wave::Force } else { Wave::Sensor };
+        let wave = if name == "encoder" { Wave::Sensor } else { Wave::Force };
         let period = |trial: &Trial| trial.model.values.last().copied().unwrap_or(1.0);
         let periods: Vec<f64> = trials.iter().map(period).collect();
         // The fundamental chooses the period; harmonics follow when it is looked at as it is.
-        let responses = self.one_ahead().predictor.responses(setting, wave, &periods);
-        Some(responses.into_iter().map(Vec::from).collect())
+        Some(self.ahead.responses(setting, wave, periods))
     }
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
-        self.in_flexible_form(model, term)
+        self.family.in_flexible_form(model, term)
     }
 
     fn is_candidate(&self, term: usize) -> bool {
-        FrictionFamily::is_candidate(self, term)
+        self.family.is_candidate(term)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Forms of effects one sample ahead: which one is more flexible, and where it begins.
 
 use missing_physics::ahead::Trial;
-use missing_physics::{Fitted, ModelFamily};
+use missing_physics::Fitted;
 
 use super::FrictionFamily;
 

@@ -11,6 +11,7 @@ mod filter;
 mod forms;
 mod full_rate;
 mod generic;
+mod hold;
 mod limits;
 mod plots;
 mod preparation;
@@ -22,6 +23,7 @@ mod words;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use missing_physics::ahead::Ahead;
 use missing_physics::basis::{dot, gram, solve};
 use missing_physics::generic::Generic;
 use missing_physics::report::{Plot, SplitError};
@@ -31,6 +33,7 @@ use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regi
 
 use rayon::prelude::*;
 
+pub use hold::HoldChoice;
 pub use preparation::{PreparationError, Prepared};
 
 use crate::axis::Axis;
@@ -72,16 +75,31 @@ pub struct FrictionFamily {
     motion: Vec<Vec<f64>>,
     blocks: Vec<Range<usize>>,
     stroke: (f64, f64),
+    hold: Option<HoldChoice>,
     ahead: Option<ahead::OneAhead>,
+    thinned: Option<ahead::OneAhead>,
     top_speed: f64,
 }
 
 impl FrictionFamily {
-    /// Prepares a recording with channels `force` and `position`.
+    /// Prepares a recording with channels `force` and `position`. Where it does not say what the force does between
+    /// samples, that is decided by what predicts better.
     ///
     /// # Errors
     /// A channel is missing or constant, or too little of the recording moves.
     pub fn new(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
+        match recording.known_hold() {
+            Some(_) => Self::as_recorded(recording, options),
+            None => hold::decided(recording, options),
+        }
+    }
+
+    /// What was decided about the force between samples, where the recording does not say it.
+    pub fn hold(&self) -> Option<HoldChoice> {
+        self.hold
+    }
+
+    fn as_recorded(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
         let prepared = Prepared::new(recording, options.bandwidth)?;
         let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
         let axis = if rotary { Axis::Rotary } else { Axis::Linear };
@@ -112,7 +130,9 @@ impl FrictionFamily {
             motion: coordinates::motion(&prepared),
             blocks: coordinates::cycles(&prepared),
             stroke,
+            hold: None,
             ahead: None,
+            thinned: None,
             top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
             prepared,
         };
@@ -120,6 +140,7 @@ impl FrictionFamily {
         family.doubt = doubt;
         let mass = simple[0].max(0.02 * family.terms[0].parameters[0].start);
         family.ahead = ahead::OneAhead::new(recording, mass, simple[1].max(0.0));
+        family.thinned = family.ahead.as_ref().and_then(|ahead| ahead.thinned(recording));
         Ok(family)
     }
 
@@ -367,8 +388,14 @@ impl ModelFamily for FrictionFamily {
         }
     }
 
-    fn ahead(&self) -> Option<&dyn missing_physics::ahead::Ahead> {
-        self.ahead.is_some().then_some(self as _)
+    fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
+        let ahead = self.ahead.as_ref()?;
+        Some(Box::new(ahead::View { family: self, ahead }))
+    }
+
+    fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
+        let ahead = self.thinned.as_ref()?;
+        Some(Box::new(ahead::View { family: self, ahead }))
     }
 
     fn form_of(&self, term: usize) -> Option<usize> {

@@ -44,6 +44,10 @@ const FED_BACK: f64 = 0.02;
 const REST: f64 = 0.5;
 /// Errors in standard deviations beyond which they are cut off: a model that runs away.
 const LIMIT: f64 = 1e4;
+/// Length of the pieces of a thinned recording, s.
+const PIECE: f64 = 1.0;
+/// Fractional part of the golden ratio: steps of it never fall in step with a cycle.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Fewest and most plants that advance together.
 const LANES: (usize, usize) = (8, 32);
 
@@ -112,6 +116,40 @@ impl Predictor {
             gains(&self.time, &self.segments, &self.counted, (mass, damping), (self.noise.position, force))
         };
         self.gains = self.ladder.iter().map(each).collect();
+    }
+
+    /// The same on pieces of about [`PIECE`] s, spread over the recording, that have `most` samples together; nothing
+    /// where the recording has no more.
+    pub fn thinned(&self, most: usize) -> Option<Self> {
+        let all: usize = self.segments.iter().map(Range::len).sum();
+        if all <= most + most / 4 {
+            return None;
+        }
+        let share = most as f64 / all as f64;
+        let mut thinned = self.clone();
+        thinned.segments.clear();
+        let mut number = 0.0f64;
+        for segment in &self.segments {
+            let interval = (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
+            let length = ((PIECE / interval) as usize).clamp(50, most / 4);
+            let mut start = segment.start;
+            while start < segment.end {
+                let end = (start + length).min(segment.end);
+                number += 1.0;
+                if (number * GOLDEN).fract() < share && end - start > length / 2 {
+                    thinned.segments.push(start..end);
+                }
+                start = end;
+            }
+        }
+        thinned.counted = thinned.segments.iter().flat_map(|s| thinned.settled(s)).collect();
+        thinned.tune(self.plant.0, self.plant.1);
+        Some(thinned)
+    }
+
+    /// Number of the piece that a sample belongs to.
+    pub fn piece(&self, sample: usize) -> usize {
+        self.segments.partition_point(|segment| segment.end <= sample)
     }
 
     /// What is known of the noise.

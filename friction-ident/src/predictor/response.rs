@@ -28,7 +28,7 @@ pub enum Wave {
 impl Predictor {
     /// Changes of the prediction errors by `sin(2 pi x/period)` and `cos(2 pi x/period)`, of 1 N (N m) against the
     /// motion or of 1 m (rad), for each period.
-    pub fn responses(&self, setting: usize, wave: Wave, periods: &[f64]) -> Vec<[Vec<f64>; 2]> {
+    pub fn responses(&self, setting: usize, wave: Wave, periods: &[f64]) -> Vec<[Vec<f32>; 2]> {
         let moving = self.moving();
         let motion: Vec<Motion> = (0..self.time.len())
             .map(|k| Motion::over(self.time[k] - self.time[k.saturating_sub(1)], self.plant))
@@ -44,7 +44,7 @@ impl Predictor {
         wavenumber: f64,
         moving: &[bool],
         motion: &[Motion],
-    ) -> [Vec<f64>; 2] {
+    ) -> [Vec<f32>; 2] {
         let gain = &self.gains[setting % self.ladder.len()];
         let mut errors = [0, 1].map(|_| Vec::with_capacity(self.counted.len()));
         let mut counted = self.counted.iter().copied().peekable();
@@ -76,7 +76,7 @@ impl Predictor {
                     x[j] += gain.position[k] * error;
                     v[j] += gain.velocity[k] * error;
                     if counts {
-                        errors[j].push(error * gain.relative[k]);
+                        errors[j].push((error * gain.relative[k]) as f32);
                     }
                 }
             }

@@ -5,6 +5,9 @@
 //! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
 
 use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+use rayon::prelude::*;
 
 use super::compare::{Comparison, Difference};
 use super::decision::{Decision, Outcome};
@@ -41,8 +44,12 @@ impl Default for Thresholds {
 
 /// Steps of a first fit, of a refit elsewhere, and of the last one.
 const STEPS: (usize, usize, usize) = (6, 6, 12);
+/// Steps of a refit on all of a recording that was searched in part.
+const IN_FULL: usize = 4;
 /// Promise below which a candidate is not fitted: beside the base, and beside other effects; nats.
 const PROMISING: (f64, f64) = (2.0, 50.0);
+/// A model is well inside the budget below this multiple of it.
+const INSIDE: f64 = 1.12;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 
@@ -82,6 +89,46 @@ pub struct Found {
 }
 
 impl Found {
+    /// Brings what was found on a part to all of the recording: every rung is refitted there and compared anew;
+    /// rungs from the first one on that does not hold are taken back.
+    pub fn confirm<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let whole = |node: &Node| {
+            let setting = fit::best_setting(ahead, &node.model);
+            fit::fit(family, ahead, node.model.clone(), setting, IN_FULL)
+        };
+        let comparison = Comparison::new(family, ahead);
+        self.base = whole(&self.base);
+        let mut held: Vec<Node> = Vec::new();
+        let mut gains = Vec::new();
+        for node in &self.rungs {
+            let node = whole(node);
+            let gain = comparison.compare(held.last().unwrap_or(&self.base), &node);
+            if gain.nats <= thresholds.better {
+                break;
+            }
+            gains.push(gain);
+            held.push(node);
+        }
+        let count = held.len();
+        if count < self.rungs.len() {
+            let names = &family.terms()[self.added[count]].name;
+            self.notes.push(format!(
+                "A search on parts of the recording found {names} besides; on all of it that gains too little."
+            ));
+            self.costs.truncate(count);
+            self.as_good.clear();
+        }
+        self.added.truncate(count);
+        (self.rungs, self.gains) = (held, gains);
+        let top = self.rungs.last().unwrap_or(&self.base);
+        self.complete = top.scale / ahead.budget() <= thresholds.complete;
+    }
+
     /// Whether a term, in whatever form, is among `terms`.
     pub fn is_in<F: ModelFamily + ?Sized>(&self, terms: &[usize], term: usize, family: &F) -> bool {
         let main = |t: usize| family.form_of(t).unwrap_or(t);
@@ -100,6 +147,17 @@ pub struct Ranked {
     pub points: f64,
 }
 
+/// An observer that parts of a search on several threads may share.
+struct Watch<'a>(Mutex<&'a mut (dyn Observer + Send)>);
+
+impl Watch<'_> {
+    fn tell(&self, event: &Event<'_>) {
+        if let Ok(mut observer) = self.0.lock() {
+            observer.event(event);
+        }
+    }
+}
+
 /// A running search.
 pub struct Search<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
@@ -109,8 +167,8 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     /// Terms that may be added.
     candidates: Vec<usize>,
     decisions: Vec<Decision>,
-    stop: &'a dyn Fn() -> bool,
-    observer: &'a mut dyn Observer,
+    stop: &'a (dyn Fn() -> bool + Sync),
+    observer: Watch<'a>,
     untried: BTreeSet<usize>,
 }
 
@@ -121,8 +179,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         ahead: &'a dyn Ahead,
         thresholds: Thresholds,
         candidates: Vec<usize>,
-        stop: &'a dyn Fn() -> bool,
-        observer: &'a mut dyn Observer,
+        stop: &'a (dyn Fn() -> bool + Sync),
+        observer: &'a mut (dyn Observer + Send),
     ) -> Self {
         Self {
             family,
@@ -132,7 +190,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             candidates,
             decisions: Vec::new(),
             stop,
-            observer,
+            observer: Watch(Mutex::new(observer)),
             untried: BTreeSet::new(),
         }
     }
@@ -181,7 +239,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                         if gain.nats > self.thresholds.better { Outcome::AsGood } else { Outcome::TooLittle };
                     self.note(size, &child, from, gain, outcome, "");
                     let effects = self.names(&child);
-                    self.observer.event(&Event::Compared { rung: size, effects: &effects, nats: gain.nats });
+                    self.observer.tell(&Event::Compared { rung: size, effects: &effects, nats: gain.nats });
                     if gain.nats <= self.thresholds.better {
                         continue;
                     }
@@ -206,7 +264,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 break;
             }
             // Inside the budget rivals need no extension.
-            let width = if self.budget(&ranked[0]) < 1.12 { 1 } else { self.thresholds.beam };
+            let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
             beam = ranked.iter().take(width).cloned().collect();
             nodes.push(ranked);
             if (self.stop)() {
@@ -228,38 +286,43 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             self.untried.extend(open);
             return (Vec::new(), Screened::default());
         }
-        self.observer.event(&Event::Screening { rung: size, candidates: open.len() });
+        self.observer.tell(&Event::Screening { rung: size, candidates: open.len() });
         let screened = screen(self.family, self.ahead, from, &open, first);
         let least = if size == 1 { PROMISING.0 } else { PROMISING.1 };
+        let most = if size == 1 { self.thresholds.fitted } else { self.thresholds.fitted.min(self.thresholds.beam) };
         // Two forms of an effect at most, so that one effect does not take all places.
         let mut mains: Vec<usize> = Vec::new();
-        let mut fitted: Vec<Node> = Vec::new();
+        let mut starts: Vec<&Promise> = Vec::new();
         for promise in screened.promises.iter().filter(|promise| promise.gain > least) {
             let main = self.main(promise.term);
             let forms = mains.iter().filter(|other| **other == main).count();
             let distinct = mains.iter().collect::<BTreeSet<_>>().len();
-            if forms >= 2 || (forms == 0 && distinct >= self.thresholds.fitted) {
-                continue;
-            }
-            if (self.stop)() {
-                self.untried.insert(promise.term);
+            if forms >= 2 || (forms == 0 && distinct >= most) {
                 continue;
             }
             mains.push(main);
-            fitted.push(fit::fit(self.family, self.ahead, promise.start.clone(), from.setting, STEPS.0));
+            starts.push(promise);
         }
+        let fitted: Vec<(usize, Option<Node>)> = starts
+            .par_iter()
+            .map(|promise| {
+                let fitted = || fit::fit(self.family, self.ahead, promise.start.clone(), from.setting, STEPS.0);
+                (promise.term, (!(self.stop)()).then(fitted))
+            })
+            .collect();
+        self.untried.extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
+        let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
         fitted.sort_by(|a, b| a.scale.total_cmp(&b.scale));
-        let keep = if size == 1 { fitted.len() } else { self.thresholds.beam + 1 };
-        let settled: Vec<Node> = fitted
-            .into_iter()
-            .take(keep)
+        let keep = if size == 1 { fitted.len() } else { self.thresholds.beam };
+        fitted.truncate(keep);
+        let mut settled: Vec<Node> = fitted
+            .into_par_iter()
             .map(|node| fit::settled(self.family, self.ahead, node, STEPS.1))
             .collect();
-        let mut settled = settled;
         settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
-        let shaped = settled.into_iter().enumerate().map(|(place, node)| {
-            if place <= self.thresholds.beam { self.shaped(node) } else { node }
-        });
+        let beam = self.thresholds.beam;
+        let shaped = settled.into_par_iter().enumerate();
+        let shaped = shaped.map(|(place, node)| if size == 1 || place < beam { self.shaped(node) } else { node });
         (shaped.collect(), screened)
     }
 

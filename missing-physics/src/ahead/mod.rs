@@ -13,7 +13,7 @@ pub mod node;
 mod report;
 mod scales;
 pub mod screen;
-mod statistics;
+pub mod statistics;
 
 pub use report::discover;
 
@@ -45,9 +45,10 @@ pub trait Ahead: Sync {
         true
     }
 
-    /// Changes of the errors by each amplitude of each of `trials`, to first order, where the family has a way
-    /// that is much cheaper than errors of the trials: the few best of them are then looked at as they are.
-    fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Vec<Vec<Vec<f64>>>> {
+    /// Changes of the errors by amplitudes of each of `trials`, to first order, where the family has a way that is
+    /// much cheaper than errors of the trials: the few best of them are then looked at as they are. Single
+    /// precision is enough to choose by.
+    fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Columns> {
         None
     }
 
@@ -56,6 +57,9 @@ pub trait Ahead: Sync {
         None
     }
 }
+
+/// A few columns for each of many trials.
+pub type Columns = std::sync::Arc<Vec<[Vec<f32>; 2]>>;
 
 /// A place to begin with a term.
 #[derive(Clone, Debug, PartialEq)]

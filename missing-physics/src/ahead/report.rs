@@ -31,7 +31,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     ahead: &dyn Ahead,
     settings: &Settings<'_>,
     (base, excluded): (&[usize], &[usize]),
-    observer: &mut dyn Observer,
+    observer: &mut (dyn Observer + Send),
 ) -> Discovery {
     let started = Instant::now();
     let everywhere = vec![1.0; family.target().len()];
@@ -50,9 +50,14 @@ pub fn discover<F: ModelFamily + ?Sized>(
         asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
     };
     let thresholds = settings.thresholds;
-    let search = Search::new(family, ahead, thresholds, candidates, &stop, observer);
+    let part = family.ahead_in_part();
+    let searched = part.as_deref().unwrap_or(ahead);
+    let search = Search::new(family, searched, thresholds, candidates, &stop, observer);
     let base = search.base(start.fit.model);
-    let found = search.run(base, settings.most);
+    let mut found = search.run(base, settings.most);
+    if part.is_some() {
+        found.confirm(family, ahead, &thresholds);
+    }
     observer.event(&Event::Finishing);
     let mut discovery = Report { family, ahead, settings, found }.discovery();
     discovery.seed = settings.seed;

@@ -90,16 +90,12 @@ impl Screening<'_> {
         let Some(columns) = self.ahead.columns(self.node.setting, term, &trials) else {
             return trials;
         };
+        let own = single(self.own.columns());
+        let (left, weight) = (single(&[self.left.clone()]).swap_remove(0), single(&[self.weight.clone()]).swap_remove(0));
         let mut ranked: Vec<(f64, Trial)> = columns
-            .into_par_iter()
+            .par_iter()
             .zip(trials)
-            .map(|(mut columns, trial)| {
-                for column in &mut columns {
-                    column.iter_mut().zip(&self.weight).for_each(|(c, w)| *c *= w);
-                    self.own.project_out(column);
-                }
-                (self.gain(family, &trial, &columns).0, trial)
-            })
+            .map(|(pair, trial)| (first_order(pair, &weight, &own, &left), trial))
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         ranked.into_iter().take(LIKELY).map(|(_, trial)| trial).collect()
@@ -161,6 +157,45 @@ impl Screening<'_> {
         // One nat for each free amplitude: what noise alone gives is half of that.
         (linear - 0.5 * square - by.len() as f64, by)
     }
+}
+
+/// In single precision.
+fn single(columns: &[Vec<f64>]) -> Vec<Vec<f32>> {
+    columns.iter().map(|column| column.iter().map(|v| *v as f32).collect()).collect()
+}
+
+/// Gain of two columns of free sign beside the orthonormal `own` ones, which `left` is free of: what lies in their
+/// space is taken out of the scalar products, not out of the columns.
+fn first_order(pair: &[Vec<f32>; 2], weight: &[f32], own: &[Vec<f32>], left: &[f32]) -> f64 {
+    let [a, b] = pair.each_ref().map(|column| {
+        column.iter().zip(weight).map(|(c, w)| c * w).collect::<Vec<f32>>()
+    });
+    let inside = |column: &[f32]| -> Vec<f64> { own.iter().map(|q| product(q, column)).collect() };
+    let (qa, qb) = (inside(&a), inside(&b));
+    let free = |x: &[f32], y: &[f32], qx: &[f64], qy: &[f64]| product(x, y) - dot(qx, qy);
+    let (aa, ab, bb) = (free(&a, &a, &qa, &qa), free(&a, &b, &qa, &qb), free(&b, &b, &qb, &qb));
+    let (ma, mb) = (product(&a, left), product(&b, left));
+    let determinant = aa * bb - ab * ab;
+    if determinant <= 1e-9 * aa * bb {
+        return 0.0;
+    }
+    0.5 * (bb * ma * ma - 2.0 * ab * ma * mb + aa * mb * mb) / determinant
+}
+
+/// Scalar product in single precision, its blocks added up in double.
+fn product(x: &[f32], y: &[f32]) -> f64 {
+    let block = |(x, y): (&[f32], &[f32])| {
+        let mut sums = [0.0f32; 16];
+        let (x16, y16) = (x.chunks_exact(16), y.chunks_exact(16));
+        let tail: f32 = x16.remainder().iter().zip(y16.remainder()).map(|(x, y)| x * y).sum();
+        for (x, y) in x16.zip(y16) {
+            for lane in 0..16 {
+                sums[lane] += x[lane] * y[lane];
+            }
+        }
+        f64::from(sums.iter().sum::<f32>() + tail)
+    };
+    x.chunks(1024).zip(y.chunks(1024)).map(block).sum()
 }
 
 /// Which amplitudes of a trial cannot be negative; a whole change has one.
