@@ -67,9 +67,9 @@ impl Load {
         let (resting, rest_stiffness) = connection.pull(moved);
         let stop = s * (momentum + stopping - inertia * half);
         let turn = s * (momentum + resting);
-        let stops = (level > 0.0) & (stop >= 0.0) & (stop <= level);
-        let rests = (level > 0.0) & (stop < 0.0) & (turn < 0.0) & (turn >= -level);
-        let back = if (stop < 0.0) & (turn < -level) { -s * level } else { 0.0 };
+        let stops = level > 0.0 && stop >= 0.0 && stop <= level;
+        let rests = level > 0.0 && stop < 0.0 && turn < 0.0 && turn >= -level;
+        let back = if stop < 0.0 && turn < -level { -s * level } else { 0.0 };
         let friction = if stop > level { s * level } else { back };
         let free = momentum - friction;
         // A load of nothing that nothing holds goes along.

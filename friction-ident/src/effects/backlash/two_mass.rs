@@ -94,7 +94,7 @@ impl Connection for Gap {
         let per_way = 1.0 / ahead.abs().max(f64::MIN_POSITIVE);
         // The end where it starts, pressed by `after` in the end.
         let after = (pressed - open + ahead).max(0.0);
-        let closed = (pressed > 0.0) & (after > 0.0);
+        let closed = pressed > 0.0 && after > 0.0;
         let share = (after + pressed) * per_way;
         let (entering, leaving) = (share * (1.0 - 0.5 * share), 0.5 * share * share);
         let slope = if after > 0.0 { entering } else { leaving };
@@ -125,8 +125,8 @@ impl Connection for Gap {
         let line = (total - stiffness * pressed) / all;
         let let_go = self.let_go(behind);
         let crosses = total < let_go - inertia * behind;
-        let opens = (pressed > 0.0) & (line < -pressed) & !crosses;
-        let closes = (pressed <= 0.0) & (free > open) & !crosses;
+        let opens = pressed > 0.0 && line < -pressed && !crosses;
+        let closes = pressed <= 0.0 && free > open && !crosses;
         let still = if let_go > 0.0 { pressed } else { 0.0 };
         let square = if opens { inertia } else { all };
         let way = if crosses { behind } else { open };
