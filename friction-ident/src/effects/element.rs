@@ -26,12 +26,6 @@ pub trait Element: Sync + Send {
     /// Newton iterations of the implicit step after a first solution for no displacement.
     fn iterations(&self) -> usize;
 
-    /// Whether the force is stiffer between two softer pieces, where Newton alone might go to and fro: then each
-    /// iteration stays between the trials before.
-    fn bracketed(&self) -> bool {
-        false
-    }
-
     /// For elements with the encoder on their own body: replaces positions of the mass, one per lane, by what is
     /// measured. Returns whether it does so.
     fn shown(&self, _p: Parameters<'_>, _state: &[f64], _position: &mut [f64]) -> bool {

@@ -1,10 +1,6 @@
 //! A second body with friction of its own, behind anything that pulls it along.
 
-use super::Parameters;
 use crate::simd::sign;
-
-/// Most trials for the mean velocity of the load; a linear connection needs two.
-const TRIALS: usize = 60;
 
 /// The body behind the connection.
 #[derive(Clone, Copy, Debug)]
@@ -17,10 +13,13 @@ pub(super) struct Load {
     pub viscous: f64,
 }
 
-/// What pulls the load along in a step: mean force on it, and its slope, against how far the mass runs
-/// ahead of the load in the step. It must not decrease.
+/// What pulls the load along in a step, against how far the mass runs ahead of it in the step.
 pub(super) trait Connection {
+    /// Mean force on the load, and its slope; it must not decrease.
     fn pull(&self, ahead: f64) -> (f64, f64);
+
+    /// Where `inertia` times what the mass runs ahead and the pull are `total` together; `inertia > 0`.
+    fn run_ahead(&self, inertia: f64, total: f64) -> f64;
 }
 
 /// A step of the load.
@@ -34,11 +33,6 @@ pub(super) struct Pulled {
 }
 
 impl Load {
-    pub(super) fn of(p: Parameters<'_>, i: usize, at: [usize; 3]) -> Self {
-        let [mass, level, viscous] = at.map(|k| p.get(k)[i]);
-        Self { mass, level, viscous }
-    }
-
     /// The force that keeps it moving at `velocity`.
     pub(super) fn drag(self, velocity: f64) -> f64 {
         self.level * sign(velocity) + self.viscous * velocity
@@ -53,6 +47,8 @@ impl Load {
     ///
     /// `F u` is never negative, so that friction never drives the load; `u` grows with `N`, so that the implicit
     /// step has one solution; and at `F_L = 0` nothing is left of it. First order where the load stops or turns.
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
     pub(super) fn step(
         self,
         velocity: f64,
@@ -60,70 +56,37 @@ impl Load {
         moved: f64,
         connection: &impl Connection,
     ) -> Pulled {
-        let inertia = 2.0 * self.mass / r + self.viscous;
-        let momentum = 2.0 * self.mass * velocity / r;
-        // What friction would have to take for the load to have the mean velocity `u`.
-        let to_take = |u: f64| momentum + connection.pull(moved - r * u).0 - inertia * u;
-        let s = if velocity < 0.0 { -1.0 } else { 1.0 };
-        let (stop, turn) = (s * to_take(0.5 * velocity), s * to_take(0.0));
-        let slides = if self.level <= 0.0 {
-            Ok(0.0)
-        } else if stop > self.level {
-            Ok(s * self.level)
-        } else if stop >= 0.0 {
-            Err(0.5 * velocity)
-        } else if turn >= 0.0 {
-            Ok(0.0)
-        } else if turn >= -self.level {
-            Err(0.0)
-        } else {
-            Ok(-s * self.level)
-        };
-        let mean = match slides {
-            Ok(friction) => {
-                let free = momentum - friction;
-                slide(0.5 * velocity, r, moved, inertia, free, connection)
-            }
-            Err(held) => held,
-        };
-        let (force, stiffness) = connection.pull(moved - r * mean);
-        let yields = inertia / (inertia + r * stiffness).max(f64::MIN_POSITIVE);
-        let slope = if slides.is_ok() { stiffness * yields } else { stiffness };
-        Pulled { force, slope, mean }
-    }
-}
-
-/// Solves `inertia u = free + N(moved - r u)` by Newton within a bracket.
-fn slide(
-    guess: f64,
-    r: f64,
-    moved: f64,
-    inertia: f64,
-    free: f64,
-    connection: &impl Connection,
-) -> f64 {
-    let (mut low, mut high, mut u) = (f64::NEG_INFINITY, f64::INFINITY, guess);
-    for _ in 0..TRIALS {
-        let (force, stiffness) = connection.pull(moved - r * u);
-        let lacks = free + force - inertia * u;
-        let slope = inertia + r * stiffness;
-        if slope <= 0.0 {
-            // Nothing holds it anywhere.
-            return u;
-        }
-        if lacks > 0.0 {
-            low = u;
-        } else {
-            high = u;
-        }
-        let newton = u + lacks / slope;
-        let inside = newton >= low && newton <= high;
-        let next = if inside { newton } else { f64::midpoint(low, high) };
-        let settled = (next - u).abs() <= 4.0 * f64::EPSILON * next.abs();
-        u = next;
-        if settled {
-            break;
+        let Self { mass, level, viscous } = self;
+        let moves = r > 0.0;
+        let rate = if moves { 1.0 / r } else { 1.0 };
+        let inertia = 2.0 * mass * rate + viscous;
+        let momentum = 2.0 * mass * velocity * rate;
+        let (s, half) = (if velocity < 0.0 { -1.0 } else { 1.0 }, 0.5 * velocity);
+        // What friction would have to take for the load to stop at the end of the step, and to stay at rest.
+        let (stopping, stop_stiffness) = connection.pull(moved - r * half);
+        let (resting, rest_stiffness) = connection.pull(moved);
+        let stop = s * (momentum + stopping - inertia * half);
+        let turn = s * (momentum + resting);
+        let stops = level > 0.0 && stop >= 0.0 && stop <= level;
+        let rests = level > 0.0 && stop < 0.0 && turn < 0.0 && turn >= -level;
+        let back = if stop < 0.0 && turn < -level { -s * level } else { 0.0 };
+        let friction = if stop > level { s * level } else { back };
+        let free = momentum - friction;
+        // A load of nothing that nothing holds goes along.
+        let per_way = (inertia * rate).max(f64::MIN_POSITIVE);
+        let ahead = connection.run_ahead(per_way, per_way * moved - free);
+        let (sliding, stiffness) = connection.pull(ahead);
+        let yielding = stiffness * per_way / (per_way + stiffness);
+        let pulled = if stops { stopping } else { sliding };
+        let slope = if stops { stop_stiffness } else { yielding };
+        let mean = if stops { half } else { (moved - ahead) * rate };
+        let pulled = if rests { resting } else { pulled };
+        let slope = if rests { rest_stiffness } else { slope };
+        let mean = if rests { 0.0 } else { mean };
+        Pulled {
+            force: if moves { pulled } else { resting },
+            slope: if moves { slope } else { 0.0 },
+            mean: if moves { mean } else { velocity },
         }
     }
-    u
 }

@@ -233,10 +233,12 @@ vectorised! {
         }
     }
 
-    /// Takes the piece, up to the stop where there is one in it.
+    /// Takes the piece, up to the stop where there is one in it. Without a friction level there is nothing to stop
+    /// for.
     pub(super) fn close_rigid(
         mean: &[f64],
         direction: &[f64],
+        level: &[f64],
         left: &mut [f64],
         displacement: &mut [f64],
         taken: &mut [f64],
@@ -248,7 +250,7 @@ vectorised! {
         time: &mut [f64],
     ) {
         let n = mean.len();
-        let (direction, left) = (&direction[..n], &mut left[..n]);
+        let (direction, level, left) = (&direction[..n], &level[..n], &mut left[..n]);
         let (displacement, taken) = (&mut displacement[..n], &mut taken[..n]);
         let (x, v, slope) = (&mut x[..n], &mut v[..n], &mut slope[..n]);
         let (dwell, sliding, time) = (&mut dwell[..n], &mut sliding[..n], &mut time[..n]);
@@ -257,7 +259,7 @@ vectorised! {
             let moves = r > 0.0;
             let change = 2.0 * (mean[i] - v0);
             let end = v0 + change;
-            let stops = moves && end * direction[i] <= 0.0;
+            let stops = moves && level[i] > 0.0 && end * direction[i] <= 0.0;
             // A lane that cannot leave its rest, because the level rises with speed, stays there.
             let held = stops && v0 == 0.0;
             // Constant acceleration up to the stop.

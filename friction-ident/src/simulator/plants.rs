@@ -55,8 +55,6 @@ pub struct Plants {
     pub(super) contact: Option<usize>,
     /// Elements with the encoder on their own body.
     shows: Vec<usize>,
-    /// Whether Newton needs a bracket.
-    pub(super) bracketed: bool,
     pub(super) iterations: usize,
     pub(super) mass: Vec<f64>,
     pub(super) time: Vec<f64>,
@@ -129,7 +127,6 @@ impl Plants {
             sensors: on(Slot::Sensor),
             contact: on(Slot::Contact).first().copied(),
             shows: (0..effects.len()).filter(shows).collect(),
-            bracketed: elements().any(Element::bracketed),
             iterations: elements().map(Element::iterations).max().unwrap_or(0),
             effects,
             mass: vec![1.0; lanes],

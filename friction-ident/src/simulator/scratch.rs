@@ -45,9 +45,6 @@ pub(super) struct Scratch {
     pub taken: Vec<f64>,
     /// Always 0: the level that an attached body sees, the velocity of a level at rest.
     pub zero: Vec<f64>,
-    /// Bracket of a balance that Newton alone may miss: displacement, and what is too much there.
-    pub low: Vec<[f64; 2]>,
-    pub high: Vec<[f64; 2]>,
 }
 
 impl Scratch {
@@ -77,32 +74,6 @@ impl Scratch {
             displacement: lane(),
             taken: lane(),
             zero: lane(),
-            low: vec![[0.0; 2]; lanes],
-            high: vec![[0.0; 2]; lanes],
-        }
-    }
-
-    /// One iteration of Newton for the displacement, kept between the last trials that were too small and too
-    /// large: a step that leaves them is replaced by the straight line between them.
-    pub fn bracket(&mut self) {
-        for i in 0..self.left.len() {
-            let (r, moved, inertia) = (self.left[i], self.displacement[i], self.inertia[i]);
-            if r <= 0.0 {
-                self.mean[i] = self.push[i] / inertia;
-                continue;
-            }
-            let excess = inertia * moved / r + r * self.elements[i] - self.push[i];
-            if excess > 0.0 {
-                self.high[i] = [moved, excess];
-            } else {
-                self.low[i] = [moved, excess];
-            }
-            let ([low, below], [high, above]) = (self.low[i], self.high[i]);
-            let newton = moved - excess / (inertia / r + r * self.stiffness[i]);
-            let leaves = newton <= low && moved > low || newton >= high && moved < high;
-            let next = if leaves { low - below * (high - low) / (above - below) } else { newton };
-            self.displacement[i] = next;
-            self.mean[i] = next / r;
         }
     }
 }

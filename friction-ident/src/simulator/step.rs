@@ -145,6 +145,7 @@ impl Plants {
         close_rigid(
             &s.mean,
             &s.direction,
+            &s.level,
             &mut s.left,
             &mut s.displacement,
             &mut s.taken,
@@ -183,19 +184,10 @@ impl Plants {
 
     /// Mean velocity with the elements, by Newton from no displacement.
     fn newton(&mut self) {
-        let s = &mut self.scratch;
-        s.displacement.fill(0.0);
-        if self.bracketed {
-            s.low.fill([f64::NEG_INFINITY, f64::NAN]);
-            s.high.fill([f64::INFINITY, f64::NAN]);
-        }
+        self.scratch.displacement.fill(0.0);
         for _ in 0..=self.iterations {
             self.respond_elements();
             let s = &mut self.scratch;
-            if self.bracketed {
-                s.bracket();
-                continue;
-            }
             newton(
                 &s.left,
                 &s.inertia,

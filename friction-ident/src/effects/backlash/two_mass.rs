@@ -4,7 +4,7 @@ use super::super::load::{Connection, Load, Pulled};
 use super::{About, Effect, Parameter, Parameters, Slot, WIDTH};
 use crate::axis::Quantity;
 use crate::effects::{Correction, Element, Onset, Response, Step};
-use crate::simd::sign;
+use crate::simd::{sign, vectorised};
 
 /// A second mass `m_L` with friction of its own that the mass meets at either end of a gap `b`, over a
 /// spring and a damper in parallel that push but never pull.
@@ -13,6 +13,8 @@ pub struct TwoMass;
 
 /// Share of the gap next to each end within which an observer takes it for closed.
 const NEAR_END: f64 = 0.05;
+/// Least viscous friction of the load against stiffness and step.
+const NOTHING: f64 = 1e-14;
 
 static ABOUT: About = About {
     name: "backlash:two-mass",
@@ -51,55 +53,165 @@ impl Effect for TwoMass {
 /// step it opens or closes: that of the spring is its change of energy over the distance, so that the spring
 /// gives back what it took and no more.
 struct Gap {
-    /// Place of the mass in the gap at the start of the step, from its middle.
-    place: f64,
-    half: f64,
+    /// Side of the middle on which the step starts; the others are seen from there.
+    side: f64,
+    /// Way to that end of the gap, and how far it is pressed instead: one of them is 0.
+    open: f64,
+    pressed: f64,
+    /// Way to the other end.
+    behind: f64,
     stiffness: f64,
     /// Damping over the length of the step.
     damping: f64,
 }
 
 impl Gap {
-    /// One end, towards which `place` and `ahead` count.
-    fn end(&self, place: f64, ahead: f64) -> (f64, f64) {
-        let pressed = |place: f64| (place - self.half).max(0.0);
-        let (before, after) = (pressed(place), pressed(place + ahead));
-        let (spring, slope) = if before > 0.0 && after > 0.0 {
-            (0.5 * (before + after), 0.5)
-        } else if before == 0.0 && after == 0.0 {
-            return (0.0, 0.0);
-        } else {
-            // It opens or closes within the step, so that `ahead` is not 0.
-            let share = (after + before) / ahead.abs();
-            let slope = if after > 0.0 { share * (1.0 - 0.5 * share) } else { 0.5 * share * share };
-            (0.5 * share * (after + before), slope)
-        };
-        let damper = self.damping * (after - before);
-        let force = self.stiffness * spring + damper;
-        let damped = if after > 0.0 { self.damping } else { 0.0 };
-        if force > 0.0 { (force, self.stiffness * slope + damped) } else { (0.0, 0.0) }
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn new(place: f64, half: f64, stiffness: f64, damping: f64) -> Self {
+        let side = if place < 0.0 { -1.0 } else { 1.0 };
+        let place = place * side;
+        let (open, pressed) = ((half - place).max(0.0), (place - half).max(0.0));
+        Self { side, open, pressed, behind: place + half, stiffness, damping }
+    }
+
+    /// Force of the end where it starts, once it has left it by `way`.
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn let_go(&self, way: f64) -> f64 {
+        let spring =
+            0.5 * self.stiffness * self.pressed * self.pressed / way.max(f64::MIN_POSITIVE);
+        (spring - self.damping * self.pressed).max(0.0)
     }
 }
 
 impl Connection for Gap {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
     fn pull(&self, ahead: f64) -> (f64, f64) {
-        let (front, back) = (self.end(self.place, ahead), self.end(-self.place, -ahead));
-        (front.0 - back.0, front.1 + back.1)
+        let Self { side, open, pressed, behind, stiffness, damping } = *self;
+        let ahead = ahead * side;
+        let per_way = 1.0 / ahead.abs().max(f64::MIN_POSITIVE);
+        // The end where it starts, pressed by `after` in the end.
+        let after = (pressed - open + ahead).max(0.0);
+        let closed = pressed > 0.0 && after > 0.0;
+        let share = (after + pressed) * per_way;
+        let (entering, leaving) = (share * (1.0 - 0.5 * share), 0.5 * share * share);
+        let slope = if after > 0.0 { entering } else { leaving };
+        let slope = if closed { 0.5 } else { slope };
+        let spring = if closed { 0.5 } else { 0.5 * share } * (after + pressed);
+        let force = stiffness * spring + damping * (after - pressed);
+        let slope = stiffness * slope + if after > 0.0 { damping } else { 0.0 };
+        let pushes = force > 0.0;
+        let (force, slope) = if pushes { (force, slope) } else { (0.0, 0.0) };
+        // The other end.
+        let after = (-behind - ahead).max(0.0);
+        let share = after * per_way;
+        let back = (0.5 * stiffness * share + damping) * after;
+        let damped = if after > 0.0 { damping } else { 0.0 };
+        let stiff = stiffness * share * (1.0 - 0.5 * share) + damped;
+        (side * (force - back), slope + stiff)
+    }
+
+    /// A line while the end where it starts stays closed or both are open; else the larger root of
+    /// `square t^2 - linear t + rest = 0` for the way `t` to where it goes.
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn run_ahead(&self, inertia: f64, total: f64) -> f64 {
+        let Self { side, open, pressed, behind, stiffness, damping } = *self;
+        let total = total * side;
+        let all = 0.5 * stiffness + damping + inertia;
+        let free = total / inertia;
+        let line = (total - stiffness * pressed) / all;
+        let let_go = self.let_go(behind);
+        let crosses = total < let_go - inertia * behind;
+        let opens = pressed > 0.0 && line < -pressed && !crosses;
+        let closes = pressed <= 0.0 && free > open && !crosses;
+        let still = if let_go > 0.0 { pressed } else { 0.0 };
+        let square = if opens { inertia } else { all };
+        let way = if crosses { behind } else { open };
+        let (toward, damped) = (if crosses { -total } else { total }, damping * (way - still));
+        let linear =
+            if opens { -total - damping * pressed } else { stiffness * way + damped + toward };
+        let from = if opens { -pressed * pressed } else { way * way - still * still };
+        let rest = 0.5 * stiffness * from;
+        let root = (linear * linear - 4.0 * square * rest).max(0.0).sqrt();
+        // Without a difference of near equals.
+        let forth = linear >= 0.0;
+        let above = if forth { linear + root } else { -2.0 * rest };
+        let t = above / if forth { 2.0 * square } else { root - linear };
+        let closed = if pressed > 0.0 { line.min(free) } else { free };
+        let ahead = if crosses {
+            -t
+        } else if opens {
+            free.min(-t)
+        } else if closes {
+            t
+        } else {
+            closed
+        };
+        side * ahead
     }
 }
 
-fn pulled(p: Parameters<'_>, step: &Step<'_>, i: usize, state: &[f64]) -> Pulled {
-    let lanes = step.duration.len();
-    let (stretch, velocity) = (state[i], state[lanes + i]);
-    let load = Load::of(p, i, [0, 1, 2]);
-    let (half, stiffness, zeta) = (0.5 * p.get(3)[i], p.get(4)[i], p.get(5)[i]);
-    let r = step.duration[i];
-    let damping = if r > 0.0 { 2.0 * zeta * (stiffness * load.mass).sqrt() / r } else { 0.0 };
-    let gap = Gap { place: -stretch, half, stiffness, damping };
-    if r <= 0.0 {
-        return Pulled { force: gap.pull(0.0).0, slope: 0.0, mean: velocity };
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn pulled(
+    load: Load,
+    [width, stiffness, zeta]: [f64; 3],
+    r: f64,
+    moved: f64,
+    stretch: f64,
+    velocity: f64,
+) -> Pulled {
+    let rate = if r > 0.0 { 1.0 / r } else { 0.0 };
+    let damping = 2.0 * zeta * (stiffness * load.mass).sqrt() * rate;
+    // Next to nothing on the ground holds a load of nothing.
+    let viscous = load.viscous.max(NOTHING * stiffness * r);
+    let load = Load { viscous, ..load };
+    load.step(velocity, r, moved, &Gap::new(-stretch, 0.5 * width, stiffness, damping))
+}
+
+vectorised! {
+    fn answer(
+        p: Parameters<'_>,
+        duration: &[f64],
+        displacement: &[f64],
+        state: &[f64],
+        force: &mut [f64],
+        stiffness: &mut [f64],
+    ) {
+        let n = duration.len();
+        let (mass, level, viscous) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
+        let (width, k, zeta) = (&p.get(3)[..n], &p.get(4)[..n], &p.get(5)[..n]);
+        let (stretch, velocity) = state.split_at(n);
+        let (displacement, velocity) = (&displacement[..n], &velocity[..n]);
+        let (force, stiffness) = (&mut force[..n], &mut stiffness[..n]);
+        for i in 0..n {
+            let load = Load { mass: mass[i], level: level[i], viscous: viscous[i] };
+            let gap = [width[i], k[i], zeta[i]];
+            let (r, moved) = (duration[i], displacement[i]);
+            let pulled = pulled(load, gap, r, moved, stretch[i], velocity[i]);
+            force[i] += pulled.force;
+            stiffness[i] += pulled.slope;
+        }
     }
-    load.step(velocity, r, step.displacement[i], &gap)
+
+    fn take(p: Parameters<'_>, duration: &[f64], displacement: &[f64], state: &mut [f64]) {
+        let n = duration.len();
+        let (mass, level, viscous) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
+        let (width, k, zeta) = (&p.get(3)[..n], &p.get(4)[..n], &p.get(5)[..n]);
+        let (stretch, velocity) = state.split_at_mut(n);
+        let (displacement, velocity) = (&displacement[..n], &mut velocity[..n]);
+        for i in 0..n {
+            let load = Load { mass: mass[i], level: level[i], viscous: viscous[i] };
+            let gap = [width[i], k[i], zeta[i]];
+            let (r, moved) = (duration[i], displacement[i]);
+            let pulled = pulled(load, gap, r, moved, stretch[i], velocity[i]);
+            stretch[i] += if r > 0.0 { r * pulled.mean - moved } else { 0.0 };
+            velocity[i] = 2.0 * pulled.mean - velocity[i];
+        }
+    }
 }
 
 /// States: stretch `x_L - x` and velocity of the load.
@@ -117,23 +229,11 @@ impl Element for TwoMass {
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        for i in 0..step.duration.len() {
-            let pulled = pulled(p, step, i, state);
-            out.force[i] += pulled.force;
-            out.stiffness[i] += pulled.slope;
-        }
+        answer(p, step.duration, step.displacement, state, out.force, out.stiffness);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
-        let lanes = step.duration.len();
-        for i in 0..lanes {
-            let (r, moved) = (step.duration[i], step.displacement[i]);
-            if r > 0.0 {
-                let pulled = pulled(p, step, i, state);
-                state[i] += r * pulled.mean - moved;
-                state[lanes + i] = 2.0 * pulled.mean - state[lanes + i];
-            }
-        }
+        take(p, step.duration, step.displacement, state);
     }
 
     /// Well inside the gap the mass moves alone, up to its end; else both bodies move together.
@@ -151,10 +251,6 @@ impl Element for TwoMass {
 
     fn iterations(&self) -> usize {
         // Soft in the gap, stiff at its ends, and stiff between two softer pieces where the load sticks.
-        12
-    }
-
-    fn bracketed(&self) -> bool {
-        true
+        4
     }
 }

@@ -8,7 +8,7 @@ use super::{
     Slot, Step, ZETA,
 };
 use crate::axis::Quantity;
-use crate::simd::add_to;
+use crate::simd::{add_to, vectorised};
 
 /// The main form with Coulomb friction `F_L` and viscous friction `d_L` of the load on the ground. The load
 /// really sticks: a force below `F_L` through the coupling does not move it.
@@ -80,28 +80,82 @@ struct Coupling {
 }
 
 impl Connection for Coupling {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
     fn pull(&self, ahead: f64) -> (f64, f64) {
         (self.start + self.slope * ahead, self.slope)
+    }
+
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn run_ahead(&self, inertia: f64, total: f64) -> f64 {
+        (total - self.start) / (inertia + self.slope)
     }
 }
 
 /// Stiffness of the coupling and its damping.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn coupling(load: Load, frequency: f64, zeta: f64) -> (f64, f64) {
     let w = TAU * frequency;
     (load.mass * w * w, 2.0 * zeta * load.mass * w)
 }
 
-fn pulled(p: Parameters<'_>, step: &Step<'_>, i: usize, state: &[f64]) -> Pulled {
-    let lanes = step.duration.len();
-    let (stretch, velocity) = (state[i], state[lanes + i]);
-    let load = Load::of(p, i, [0, 3, 4]);
-    let (stiffness, damping) = coupling(load, p.get(1)[i], p.get(2)[i]);
-    let (r, start) = (step.duration[i], -stiffness * stretch);
-    if r <= 0.0 {
-        return Pulled { force: start, slope: 0.0, mean: velocity };
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn pulled(
+    load: Load,
+    f: f64,
+    zeta: f64,
+    r: f64,
+    moved: f64,
+    stretch: f64,
+    velocity: f64,
+) -> Pulled {
+    let (stiffness, damping) = coupling(load, f, zeta);
+    let rate = if r > 0.0 { 1.0 / r } else { 0.0 };
+    let slope = 0.5 * stiffness + damping * rate;
+    load.step(velocity, r, moved, &Coupling { start: -stiffness * stretch, slope })
+}
+
+vectorised! {
+    fn answer(
+        p: Parameters<'_>,
+        duration: &[f64],
+        displacement: &[f64],
+        state: &[f64],
+        force: &mut [f64],
+        stiffness: &mut [f64],
+    ) {
+        let n = duration.len();
+        let (mass, f, zeta) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
+        let (level, viscous) = (&p.get(3)[..n], &p.get(4)[..n]);
+        let (stretch, velocity) = state.split_at(n);
+        let (displacement, velocity) = (&displacement[..n], &velocity[..n]);
+        let (force, stiffness) = (&mut force[..n], &mut stiffness[..n]);
+        for i in 0..n {
+            let load = Load { mass: mass[i], level: level[i], viscous: viscous[i] };
+            let (r, moved) = (duration[i], displacement[i]);
+            let pulled = pulled(load, f[i], zeta[i], r, moved, stretch[i], velocity[i]);
+            force[i] += pulled.force;
+            stiffness[i] += pulled.slope;
+        }
     }
-    let connection = Coupling { start, slope: 0.5 * stiffness + damping / r };
-    load.step(velocity, r, step.displacement[i], &connection)
+
+    fn take(p: Parameters<'_>, duration: &[f64], displacement: &[f64], state: &mut [f64]) {
+        let n = duration.len();
+        let (mass, f, zeta) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
+        let (level, viscous) = (&p.get(3)[..n], &p.get(4)[..n]);
+        let (stretch, velocity) = state.split_at_mut(n);
+        let (displacement, velocity) = (&displacement[..n], &mut velocity[..n]);
+        for i in 0..n {
+            let load = Load { mass: mass[i], level: level[i], viscous: viscous[i] };
+            let (r, moved) = (duration[i], displacement[i]);
+            let pulled = pulled(load, f[i], zeta[i], r, moved, stretch[i], velocity[i]);
+            stretch[i] += if r > 0.0 { r * pulled.mean - moved } else { 0.0 };
+            velocity[i] = 2.0 * pulled.mean - velocity[i];
+        }
+    }
 }
 
 /// States: stretch `x_L - x` and velocity of the load.
@@ -119,23 +173,11 @@ impl Element for WithFriction {
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        for i in 0..step.duration.len() {
-            let pulled = pulled(p, step, i, state);
-            out.force[i] += pulled.force;
-            out.stiffness[i] += pulled.slope;
-        }
+        answer(p, step.duration, step.displacement, state, out.force, out.stiffness);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
-        let lanes = step.duration.len();
-        for i in 0..lanes {
-            let (r, moved) = (step.duration[i], step.displacement[i]);
-            if r > 0.0 {
-                let pulled = pulled(p, step, i, state);
-                state[i] += r * pulled.mean - moved;
-                state[lanes + i] = 2.0 * pulled.mean - state[lanes + i];
-            }
-        }
+        take(p, step.duration, step.displacement, state);
     }
 
     /// Both bodies move together.
@@ -163,10 +205,6 @@ impl Element for WithFriction {
 
     fn iterations(&self) -> usize {
         // A load that sticks is a stiff piece between two softer ones.
-        8
-    }
-
-    fn bracketed(&self) -> bool {
-        true
+        3
     }
 }
