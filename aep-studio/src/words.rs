@@ -3,7 +3,7 @@
 use missing_physics::confirm::{Confirmation, Confirmed};
 use missing_physics::diagnosis::Diagnosis;
 use missing_physics::quantity::{number, percent, quantity};
-use missing_physics::report::{Discovery, Estimate, Rung, SplitError, Verdict};
+use missing_physics::report::{Candidate, Discovery, Estimate, Rung, SplitError, Verdict};
 use missing_physics::residual_tests::Whiteness;
 
 mod compared;
@@ -151,6 +151,18 @@ pub fn chance(p_value: f64) -> String {
     } else {
         self::p_value(p_value)
     }
+}
+
+/// What a candidate that was not to be added promises; nothing where it is not told in nats.
+pub fn suggestion(best: &Candidate) -> Option<String> {
+    let gain = nats(best.nats?);
+    let chance = chance(best.p_value);
+    let equals = if chance.starts_with('<') { "" } else { "= " };
+    Some(format!(
+        "Most likely missing: {}. One sample ahead the model with it gains {gain} nats (p {equals}{chance}). Nothing \
+         was added.",
+        best.effect
+    ))
 }
 
 /// Whether the rungs are judged by what they predict one sample ahead.
@@ -336,6 +348,17 @@ mod tests {
         assert_eq!(chance(0.0013), "0.001");
         assert_eq!(chance(0.25), "0.25");
         assert_eq!(chance(f64::NAN), "-");
+    }
+
+    #[test]
+    fn a_suggestion_names_the_effect_and_what_it_gains() {
+        let json =
+            serde_json::json!({"effect": "drift", "gain": 0.1, "p_value": 0.001, "nats": 340.2});
+        let best: Candidate = serde_json::from_value(json).unwrap();
+        let said = suggestion(&best).unwrap();
+        assert!(said.starts_with("Most likely missing: drift."), "{said}");
+        assert!(said.contains("gains +340 nats (p <= 0.001)"), "{said}");
+        assert_eq!(suggestion(&Candidate { nats: None, ..best }), None);
     }
 
     #[test]

@@ -62,8 +62,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     steps::same_axis(&family, &model)?;
     progress.say("fitting the model");
     progress.within(settings.time_limit);
-    let discovery = suggest(&family, &settings, &mut progress)?;
-    let candidates = discovery.ranking.first().map_or(&[][..], Vec::as_slice);
+    let mut discovery = suggest(&family, &settings, &mut progress)?;
+    let candidates = discovery.ranking.first().cloned().unwrap_or_default();
     let better = settings.thresholds.better;
     let likely = candidates.iter().filter(|c| {
         c.p_value <= settings.alpha && c.gain > 0.0 && c.nats.is_none_or(|nats| nats > better)
@@ -78,6 +78,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let mut likely = likely;
     let likely = likely.next();
     drop(progress);
+    if let Some(summary) = likely.and_then(words::suggestion) {
+        discovery.summary = summary;
+    }
     let data = check(&loaded.recording);
     let more = proposal.more;
     let report = Report {
@@ -103,7 +106,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             "No effect was found before the search was stopped.\n".to_owned()
         }
         None if candidates.iter().any(|candidate| candidate.nats.is_some()) => {
-            format!("No effect of the library gains the {} nats that are needed.\n", better)
+            format!("No effect of the library gains the {better} nats that are needed.\n")
         }
         None => "No effect of the library gains more than chance does.\n".to_owned(),
     };
@@ -117,7 +120,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + "\n"
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Which effect is missing")
-        + &output::ranking(candidates, Columns::All)
+        + &output::ranking(&candidates, Columns::All)
         + &compared
         + &output::notes(&discovery)
         + &proposal.text

@@ -21,6 +21,8 @@ const CHANCE: f64 = 0.05;
 const MEAN_ERROR: &str = "largest mean error";
 /// How to read a ranking by prediction errors.
 const RANKING: &str = "share: of the squared prediction error; chance: of as large a gain where errors are shifted in time";
+/// Characters of a line.
+const LINE: u16 = 100;
 /// Width of the bars.
 const BAR: usize = 10;
 
@@ -116,7 +118,7 @@ pub fn compared(discovery: &Discovery, thresholds: &Thresholds) -> String {
             "compared with" | "outcome" => (heading, Align::Left),
             number => (number, Align::Right),
         });
-        let mut table = Table::new(&columns);
+        let mut table = Table::new(&columns).at_most(LINE);
         for [set, with, difference, needed, times, outcome] in group.rows {
             // Effects stand below each other: the outcome needs the width.
             let stacked = |effects: String| effects.replace(" + ", "\n+ ");
@@ -151,7 +153,7 @@ fn ladder_ahead(discovery: &Discovery, first: &str) -> String {
         ("p-value", Align::Right),
     ];
     columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Right)));
-    let mut table = Table::new(&columns);
+    let mut table = Table::new(&columns).at_most(LINE);
     let sizes = discovery.ladder.iter().filter_map(|rung| rung.budget);
     let largest = sizes.filter(|size| size.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
     let dash = || "-".to_owned();
@@ -337,7 +339,7 @@ pub fn ranking(candidates: &[Candidate], shown_of: Columns) -> String {
         (if ahead { "chance" } else { "p-value" }, Align::Right),
         ("size", Align::Left),
     ]);
-    let mut table = Table::new(&columns);
+    let mut table = Table::new(&columns).at_most(LINE);
     for candidate in &candidates[..shown] {
         let nats = candidate.nats.map_or_else(|| "-".to_owned(), words::nats);
         let p_value = if ahead { words::chance } else { words::p_value };
@@ -345,7 +347,7 @@ pub fn ranking(candidates: &[Candidate], shown_of: Columns) -> String {
             bar(candidate.gain, BAR),
             percent(candidate.gain),
             p_value(candidate.p_value),
-            shortened(&candidate.size, if ahead { 36 } else { 46 }),
+            shortened(&candidate.size, if ahead { 32 } else { 46 }),
         ];
         let first = std::iter::once(candidate.effect.clone()).chain(ahead.then_some(nats));
         table.row(first.chain(cells));

@@ -140,7 +140,10 @@ pub fn why_nothing(discovery: &Discovery, rung: usize, thresholds: &Thresholds) 
         return Some("the search was stopped before anything was compared here".to_owned());
     }
     let best = discovery.ranking.get(rung)?.first()?;
-    let gain = best.nats.map(|gain| format!(", may gain {} nats", nats(gain))).unwrap_or_default();
+    let needed = nats(thresholds.better);
+    let needed = needed.trim_start_matches('+');
+    let gain = |gain| format!(", may gain {} nats where {needed} are needed", nats(gain));
+    let gain = best.nats.map(gain).unwrap_or_default();
     Some(format!("nothing promised enough to be fitted; the best, {}{gain}", best.effect))
 }
 
@@ -311,7 +314,7 @@ mod tests {
         assert!(why(&[gone]).starts_with("drift was taken out again: without it 20 nats are lost"));
         assert_eq!(
             why(&[]),
-            "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats"
+            "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats where 100 are needed"
         );
         // The rung that was reached needs no excuse.
         assert_eq!(why_nothing(&discovery(&["stribeck"], &[]), 0, &Thresholds::default()), None);
