@@ -35,7 +35,7 @@ Examples:
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep effects                                   what can be found, with equations
 
-Exit codes: 0 done, 1 failed, 2 wrong usage or bad input.";
+Exit codes: 0 done, 1 failed, 2 wrong usage or bad input, 130 ended by Ctrl-C (with what was found).";
 
 /// What every command understands.
 #[derive(clap::Args, Clone, Copy, Debug)]

@@ -21,7 +21,8 @@ mod views;
 pub use check::data_check;
 pub use confirmation::confirmation;
 pub use discovery::{
-    Columns, ladder, note, notes, parameters, ranking, regimes, verdict, where_it_fails,
+    Columns, compared, comparisons, ladder, note, notes, parameters, ranking, regimes, verdict,
+    where_it_fails, why,
 };
 pub use residual::{lines, tests};
 pub use style::{bold, dim, heading};

@@ -3,6 +3,7 @@
 use aep_data::Loaded;
 use aep_studio::Source;
 use missing_physics::Discovery;
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::data_check::DataCheck;
 use serde_json::{Value, json};
 
@@ -29,6 +30,8 @@ pub struct Report<'a> {
     pub loaded: &'a Loaded,
     /// What was seen in the data.
     pub check: &'a DataCheck,
+    /// What an effect had to gain, where that was asked.
+    pub thresholds: Thresholds,
     /// Further entries of the JSON.
     pub more: Vec<(&'static str, Value)>,
 }
@@ -49,7 +52,7 @@ impl Report<'_> {
     }
 
     fn page(&self) -> String {
-        let source = source(self.loaded);
+        let source = Source { thresholds: self.thresholds, ..source(self.loaded) };
         match self.kind {
             Kind::Discovery => aep_studio::report::html(self.discovery, &source, self.check),
             Kind::Comparison => aep_studio::report::comparison(self.discovery, &source, self.check),
@@ -106,5 +109,6 @@ fn source(loaded: &Loaded) -> Source {
         name: loaded.recording.name().to_owned(),
         columns: columns.collect(),
         command: format!("aep {}", words.collect::<Vec<String>>().join(" ")),
+        thresholds: Thresholds::default(),
     }
 }

@@ -32,6 +32,11 @@ impl Watch {
         Self { flag: flag(), until: limit.and_then(|limit| Instant::now().checked_add(limit)) }
     }
 
+    /// Whether the user asked for an end.
+    pub fn is_interrupted(self) -> bool {
+        self.flag.load(Ordering::Relaxed)
+    }
+
     /// The flag that Ctrl-C sets.
     pub fn flag(self) -> &'static AtomicBool {
         self.flag
@@ -44,13 +49,13 @@ impl Watch {
 
     /// Whether nothing new is to begin.
     pub fn is_over(self) -> bool {
-        self.flag.load(Ordering::Relaxed) || self.left().is_some_and(|left| left.is_zero())
+        self.is_interrupted() || self.left().is_some_and(|left| left.is_zero())
     }
 
     /// The end of a command that has shown and saved what it has: a failure after Ctrl-C, so that
     /// scripts can tell; a limit is no failure.
     pub fn end(self) -> Result<(), Failure> {
-        if self.flag.load(Ordering::Relaxed) {
+        if self.is_interrupted() {
             return Err(Failure::interrupted("what was found so far is what is reported"));
         }
         Ok(())

@@ -3,11 +3,13 @@
 use std::fmt::Write;
 
 use missing_physics::Discovery;
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::data_check::DataCheck;
 
 use crate::html::{escape, section};
 use crate::plot;
 
+mod compared;
 mod confirmation;
 mod data;
 mod doubts;
@@ -19,8 +21,8 @@ mod verdict;
 mod views;
 mod where_it_fails;
 
-/// Where the recording came from, for the head of the page.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// Where the recording came from and what was asked of it.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Source {
     /// Name of the file.
     pub name: String,
@@ -28,6 +30,8 @@ pub struct Source {
     pub columns: Vec<[String; 3]>,
     /// The command that makes this page again.
     pub command: String,
+    /// What an effect had to gain.
+    pub thresholds: Thresholds,
 }
 
 const STYLE: &str = include_str!("report/style.css");
@@ -41,7 +45,8 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
         where_it_fails::section(discovery),
         residual::section(discovery),
         curves(discovery),
-        ranking::section(discovery),
+        ranking::section(discovery, source),
+        compared::section(discovery, source),
         parameters::section(discovery),
         doubts::section(discovery),
         data::section(check, source),

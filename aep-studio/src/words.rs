@@ -3,8 +3,15 @@
 use missing_physics::confirm::{Confirmation, Confirmed};
 use missing_physics::diagnosis::Diagnosis;
 use missing_physics::quantity::{number, percent, quantity};
-use missing_physics::report::{Discovery, Estimate, Rung, SplitError, Verdict};
+use missing_physics::report::{Candidate, Discovery, Estimate, Rung, SplitError, Verdict};
 use missing_physics::residual_tests::Whiteness;
+
+mod compared;
+
+pub use compared::{
+    COMPARED, COMPARED_HEADINGS, Compared, compared, comparisons, effects_of, needed, outcome,
+    why_nothing,
+};
 
 /// From this p-value on a finding may well be chance.
 const CHANCE: f64 = 0.05;
@@ -87,16 +94,88 @@ pub fn floor(discovery: &Discovery, name: &ErrorName) -> Option<f64> {
     (absolute > 0.0).then(|| floor * relative / absolute)
 }
 
+/// Whether the search was cut before its end, so that what was found is what was found so far.
+pub fn is_cut(discovery: &Discovery) -> bool {
+    let said = |note: &String| note.starts_with("Stopped before the end");
+    let stopped = discovery.verdict == Verdict::Stopped;
+    stopped || !discovery.untried.is_empty() || discovery.notes.iter().any(said)
+}
+
 /// The verdict in two or three words.
 pub fn verdict(discovery: &Discovery) -> &'static str {
     match discovery.verdict {
+        Verdict::Stopped => "Stopped before anything was found",
+        // What stands was compared; what else there is was not looked for.
+        Verdict::EffectsFound | Verdict::Ambiguous if is_cut(discovery) => "Found so far",
         Verdict::EffectsFound if discovery.added.len() > 1 => "Missing effects found",
         Verdict::EffectsFound => "Missing effect found",
         Verdict::NothingMissing => "Nothing is missing",
         Verdict::Unexplained => "Unexplained structure",
         Verdict::Ambiguous => "Found, but ambiguous",
-        Verdict::Stopped => "Stopped before anything was found",
     }
+}
+
+/// Whether the last model explains all that the sensors do not: `complete: 1.05 times what the sensors make is
+/// left`; nothing where that is not known.
+pub fn completeness(discovery: &Discovery) -> Option<String> {
+    let budget = discovery.budget?;
+    let word = if budget.complete { "complete" } else { "incomplete" };
+    Some(format!("{word}: {} times what the sensors make is left", times(budget.last)))
+}
+
+/// A multiple of what the sensors make: `1.05`, `3.1`, `120`.
+pub fn times(value: f64) -> String {
+    match value {
+        _ if !value.is_finite() => "-".to_owned(),
+        _ if value < 2.0 => format!("{value:.2}"),
+        _ if value < 100.0 => format!("{value:.1}"),
+        _ => format!("{value:.0}"),
+    }
+}
+
+/// A gain in log-likelihood, signed: `+340`, `-2.4`.
+pub fn nats(value: f64) -> String {
+    match value {
+        _ if !value.is_finite() => "-".to_owned(),
+        _ if value.abs() < 0.05 => "0.0".to_owned(),
+        _ if value.abs() < 9.95 => format!("{value:+.1}"),
+        _ => format!("{value:+.0}"),
+    }
+}
+
+/// Chance of a gain as large, as shifts in time tell it: they cannot tell less than one over their number.
+pub fn chance(p_value: f64) -> String {
+    const SMALLEST: f64 = 1.0 / (missing_physics::ahead::chance::SHIFTS as f64 + 1.0);
+    if p_value <= SMALLEST * (1.0 + 1e-9) {
+        format!("<= {}", self::p_value(SMALLEST))
+    } else {
+        self::p_value(p_value)
+    }
+}
+
+/// What a candidate that was not to be added promises; nothing where it is not told in nats.
+pub fn suggestion(best: &Candidate) -> Option<String> {
+    let gain = nats(best.nats?);
+    let chance = chance(best.p_value);
+    let equals = if chance.starts_with('<') { "" } else { "= " };
+    Some(format!(
+        "Most likely missing: {}. One sample ahead the model with it gains {gain} nats (p {equals}{chance}). Nothing \
+         was added.",
+        best.effect
+    ))
+}
+
+/// Whether the rungs are judged by what they predict one sample ahead.
+pub fn has_budget(discovery: &Discovery) -> bool {
+    discovery.ladder.iter().any(|rung| rung.budget.is_some())
+}
+
+/// The errors that stand beside prediction errors, for people: the main one, and those of other quantities.
+pub fn views_beside(discovery: &Discovery) -> Vec<ErrorName> {
+    let names = errors(discovery);
+    let main = names.first().map(|name| name.quantity.clone());
+    let kept = |(k, name): &(usize, ErrorName)| *k == 0 || Some(&name.quantity) != main.as_ref();
+    names.into_iter().enumerate().filter(kept).map(|(_, name)| name).collect()
 }
 
 /// What a rung is called: `base model` or `+ stribeck`.
@@ -261,5 +340,63 @@ mod tests {
         assert_eq!(p_value(0.0123), "0.012");
         assert_eq!(p_value(0.5), "0.50");
         assert_eq!(p_value(f64::NAN), "-");
+    }
+
+    #[test]
+    fn chances_say_where_shifts_end() {
+        assert_eq!(chance(0.001), "<= 0.001");
+        assert_eq!(chance(0.0013), "0.001");
+        assert_eq!(chance(0.25), "0.25");
+        assert_eq!(chance(f64::NAN), "-");
+    }
+
+    #[test]
+    fn a_suggestion_names_the_effect_and_what_it_gains() {
+        let json =
+            serde_json::json!({"effect": "drift", "gain": 0.1, "p_value": 0.001, "nats": 340.2});
+        let best: Candidate = serde_json::from_value(json).unwrap();
+        let said = suggestion(&best).unwrap();
+        assert!(said.starts_with("Most likely missing: drift."), "{said}");
+        assert!(said.contains("gains +340 nats (p <= 0.001)"), "{said}");
+        assert_eq!(suggestion(&Candidate { nats: None, ..best }), None);
+    }
+
+    #[test]
+    fn multiples_and_gains_have_the_digits_that_matter() {
+        assert_eq!([1.046, 3.14, 123.4, f64::NAN].map(times), ["1.05", "3.1", "123", "-"]);
+        assert_eq!([340.4, -2.44, 0.01, f64::INFINITY].map(nats), ["+340", "-2.4", "0.0", "-"]);
+    }
+
+    fn discovery(verdict: &str, complete: bool) -> Discovery {
+        let json = serde_json::json!({
+            "verdict": verdict, "added": ["stribeck"], "ladder": [], "ranking": [], "where": [], "ambiguous": [],
+            "noise_floor": {}, "seed": 1, "wall_s": 1.0,
+            "budget": {"expected": 1e-7, "base": 9.0, "last": 3.14, "complete": complete},
+        });
+        serde_json::from_value(json).unwrap()
+    }
+
+    #[test]
+    fn a_verdict_says_whether_the_model_is_complete() {
+        let said = |complete| completeness(&discovery("effects_found", complete)).unwrap();
+        assert_eq!(said(true), "complete: 3.1 times what the sensors make is left");
+        assert_eq!(said(false), "incomplete: 3.1 times what the sensors make is left");
+        let unknown = Discovery { budget: None, ..discovery("effects_found", true) };
+        assert_eq!(completeness(&unknown), None);
+    }
+
+    #[test]
+    fn what_a_search_found_before_it_was_cut_was_found_so_far() {
+        let whole = discovery("effects_found", true);
+        assert_eq!(verdict(&whole), "Missing effect found");
+        for verdict in ["effects_found", "ambiguous"] {
+            let untried = vec!["drift".to_owned()];
+            let cut = Discovery { untried, ..discovery(verdict, true) };
+            assert_eq!(super::verdict(&cut), "Found so far");
+            let notes = vec!["Stopped before the end: ...".to_owned()];
+            let noted = Discovery { notes, ..discovery(verdict, true) };
+            assert_eq!(super::verdict(&noted), "Found so far");
+        }
+        assert_eq!(verdict(&discovery("stopped", false)), "Stopped before anything was found");
     }
 }

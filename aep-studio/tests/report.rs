@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use aep_studio::{Source, report};
 use missing_physics::data_check::{DataCheck, check};
+use missing_physics::report::Verdict;
 use missing_physics::{Channel, Discovery, Recording};
 use serde_json::json;
 
@@ -21,7 +22,12 @@ fn data() -> DataCheck {
 
 fn source(name: &str) -> Source {
     let columns = vec![["force".into(), "vir*gtau".into(), "N".into()]];
-    Source { name: name.to_owned(), columns, command: "aep discover run.csv --seed 1".to_owned() }
+    Source {
+        name: name.to_owned(),
+        columns,
+        command: "aep discover run.csv --seed 1".to_owned(),
+        ..Source::default()
+    }
 }
 
 fn page(discovery: &Discovery) -> String {
@@ -89,6 +95,67 @@ fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
     }
 }
 
+/// The discovery with what a search by prediction errors tells besides.
+fn ahead() -> Discovery {
+    let mut discovery = discovery();
+    for (k, rung) in discovery.ladder.iter_mut().enumerate() {
+        rung.budget = Some([12.5, 3.14][k.min(1)]);
+        rung.likelihood_gain = (k > 0).then_some(812.0);
+    }
+    for candidate in discovery.ranking.iter_mut().flatten() {
+        candidate.nats = Some(81.2);
+        candidate.p_value = 0.001;
+    }
+    let last = discovery.ladder.last().unwrap().effects.clone();
+    let below = discovery.ladder.len();
+    let decision = |candidate: &str, outcome: &str, rung: usize| {
+        let mut with = last.clone();
+        with.push(candidate.to_owned());
+        json!({"rung": rung, "candidate": with, "compared_with": last, "difference": 55.0,
+            "standard_error": 7.0, "budget": 3.1, "outcome": outcome, "reason": "so <it> is"})
+    };
+    let decisions =
+        json!([decision("cogging", "too_little", below), decision("drift", "worse", 1)]);
+    discovery.decisions = serde_json::from_value(decisions).unwrap();
+    let budget = json!({"expected": 1e-7, "base": 12.5, "last": 3.14, "complete": false});
+    discovery.budget = Some(serde_json::from_value(budget).unwrap());
+    discovery
+}
+
+#[test]
+fn what_decided_stands_on_the_page() {
+    let page = page(&ahead());
+    for part in [
+        "The model is incomplete: 3.1 times what the sensors make is left.",
+        "12.5 ×",
+        "Prediction error (× sensors)",
+        "+812",
+        "What was compared",
+        "2 comparisons of models",
+        "Sets of 1 effect",
+        "+55 ± 7.0",
+        "&gt; +100",
+        "gains too little (so &lt;it&gt; is)",
+        "another is better",
+        "&lt;= 0.001",
+        "Gain, nats",
+    ] {
+        assert!(page.contains(part), "'{part}' is not on the page");
+    }
+    assert!(page.contains("<header class=doubt>"));
+    // The record is folded.
+    assert!(page.contains("<details><summary>Sets of 1 effect: 1</summary>"));
+}
+
+#[test]
+fn a_search_that_was_cut_claims_no_more_than_it_has() {
+    let mut discovery = ahead();
+    discovery.verdict = Verdict::EffectsFound;
+    discovery.untried = vec!["drift".to_owned()];
+    let page = page(&discovery);
+    assert!(page.contains("Found so far") && !page.contains("Missing effect"));
+}
+
 #[test]
 fn the_page_loads_nothing_and_runs_nothing() {
     let page = page(&discovery());
@@ -110,11 +177,26 @@ fn names_from_files_cannot_become_markup() {
     discovery.plots[0].title = evil.to_owned();
     let page = report::html(&discovery, &source(evil), &data());
     assert!(!page.contains("<img"));
+    let mut discovery = ahead();
+    discovery.ladder[1].added = Some(evil.to_owned());
+    for decision in &mut discovery.decisions {
+        decision.candidate[0] = evil.to_owned();
+        decision.compared_with = vec![evil.to_owned()];
+        decision.reason = evil.to_owned();
+    }
+    discovery.ranking[0][0].size = evil.to_owned();
+    let page = report::html(&discovery, &source(evil), &data());
+    assert!(!page.contains("<img"));
 }
 
 #[test]
 fn every_tag_that_opens_is_closed() {
-    let page = page(&discovery());
+    for page in [page(&discovery()), page(&ahead())] {
+        tags_are_closed(&page);
+    }
+}
+
+fn tags_are_closed(page: &str) {
     for tag in ["section", "div", "table", "tr", "td", "th", "figure", "svg", "details", "ul", "li"]
     {
         let count = |text: &str| page.matches(text).count();

@@ -1,9 +1,11 @@
 //! How a search runs and where its results go.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use missing_physics::Settings;
+use missing_physics::ahead::beam::Thresholds;
 
 use super::EffectNames;
 use crate::failure::Failure;
@@ -16,18 +18,84 @@ pub struct RunArgs {
     /// Seed of every random choice; the same seed gives the same result
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Begin nothing new after this many seconds; what was found is kept
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = seconds)]
-    time_limit: Option<Duration>,
-    /// False-alarm rate of a screening: the largest p-value at which an effect is added
+    /// Seconds of the search, after which the best so far is told as such; `none` for no limit. A result
+    /// that the limit did not cut is the same on every machine
+    #[arg(long, value_name = "S", default_value = "60", allow_negative_numbers = true, value_parser = limit)]
+    time_limit: Limit,
+    /// Largest p-value at which an effect is called likely, by 'suggest' and on --validate recordings
     #[arg(long, value_name = "P", default_value = "0.05", allow_negative_numbers = true, value_parser = rate)]
     alpha: f64,
-    /// Most effects to add
-    #[arg(long, value_name = "N", default_value_t = 8)]
-    most: usize,
     /// Effects not to try, e.g. ripple,presliding
     #[arg(long, value_name = "EFFECTS", default_value = "")]
     exclude: EffectNames,
+    /// Print every comparison of models: by how much, what was needed, what came of it
+    #[arg(long)]
+    pub explain: bool,
+    #[command(flatten)]
+    thresholds: ThresholdArgs,
+}
+
+/// What an effect must be worth.
+#[derive(clap::Args, Clone, Debug)]
+#[command(next_help_heading = "Thresholds")]
+struct ThresholdArgs {
+    /// Held-out log-likelihood that an effect must gain, in nats: higher finds less and errs less
+    #[arg(long, value_name = "NATS", default_value_t = Thresholds::default().better, allow_negative_numbers = true, value_parser = positive)]
+    better: f64,
+    /// Share of all that is explained that a further effect must explain, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value_t = Thresholds::default().share, allow_negative_numbers = true, value_parser = share)]
+    share: f64,
+    /// How near to the best a set of effects is as good, so that the plainest is taken: nats, or after a
+    /// comma a share of the gain, whichever is more
+    #[arg(long, value_name = "NATS[,SHARE]", default_value_t = AsGood::default(), allow_negative_numbers = true, value_parser = as_good)]
+    as_good: AsGood,
+    /// A model is complete where it errs up to this many times as much as the sensors make it
+    #[arg(long, value_name = "FACTOR", default_value_t = Thresholds::default().complete, allow_negative_numbers = true, value_parser = positive)]
+    complete: f64,
+    /// Sets of effects that are followed side by side: more finds more and takes longer
+    #[arg(long, value_name = "N", default_value_t = Thresholds::default().beam, value_parser = count)]
+    beam: usize,
+    /// Most effects to add
+    #[arg(long, visible_alias = "most", value_name = "N", default_value_t = Thresholds::default().most)]
+    most_effects: usize,
+}
+
+impl ThresholdArgs {
+    fn thresholds(&self) -> Thresholds {
+        Thresholds {
+            better: self.better,
+            share: self.share,
+            as_good: (self.as_good.nats, self.as_good.share),
+            complete: self.complete,
+            beam: self.beam,
+            most: self.most_effects,
+            ..Thresholds::default()
+        }
+    }
+}
+
+/// A time limit, or none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Limit(Option<Duration>);
+
+/// How near two sets are where they are as good.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct AsGood {
+    nats: f64,
+    share: f64,
+}
+
+impl Default for AsGood {
+    fn default() -> Self {
+        let (nats, share) = Thresholds::default().as_good;
+        Self { nats, share }
+    }
+}
+
+impl fmt::Display for AsGood {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{},{}", self.nats, self.share)
+    }
 }
 
 impl RunArgs {
@@ -38,9 +106,10 @@ impl RunArgs {
             exclude: self.exclude.checked()?,
             seed: self.seed,
             alpha: self.alpha,
-            most: self.most,
+            most: self.thresholds.most_effects,
+            thresholds: self.thresholds.thresholds(),
             stop: Some(stop::flag()),
-            time_limit: self.time_limit,
+            time_limit: self.time_limit.0,
             ..Settings::default()
         })
     }
@@ -80,6 +149,46 @@ impl OutputArgs {
     }
 }
 
+fn limit(text: &str) -> Result<Limit, String> {
+    if text == "none" {
+        return Ok(Limit(None));
+    }
+    let limit = seconds(text).map(|limit| Limit(Some(limit)));
+    limit.map_err(|why| format!("{why}, or 'none'"))
+}
+
+fn as_good(text: &str) -> Result<AsGood, String> {
+    let wrong = || "it must be a number of nats, or one and a share of the gain: 6,0.02".to_owned();
+    let number = |text: &str| match text.trim().parse::<f64>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err(wrong()),
+    };
+    let (nats, share) = text.split_once(',').unwrap_or((text, "0"));
+    let (nats, share) = (number(nats)?, number(share)?);
+    if share < 1.0 { Ok(AsGood { nats, share }) } else { Err(wrong()) }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
+        _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..1.0).contains(&share) => Ok(share),
+        _ => Err("it must be a share from 0 to below 1, e.g. 0.02".to_owned()),
+    }
+}
+
+fn count(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if count > 0 => Ok(count),
+        _ => Err("it must be a whole number from 1 on".to_owned()),
+    }
+}
+
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text.parse().map_err(|_| "it must be a number of seconds".to_owned())?;
     match Duration::try_from_secs_f64(seconds) {
@@ -92,5 +201,66 @@ fn rate(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(rate) if rate > 0.0 && rate < 1.0 => Ok(rate),
         _ => Err("it must be a probability between 0 and 1, e.g. 0.05".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        run: RunArgs,
+    }
+
+    fn settings(line: &str) -> Settings<'static> {
+        let words = std::iter::once("aep").chain(line.split_whitespace());
+        Line::try_parse_from(words).unwrap().run.settings(Vec::new()).unwrap()
+    }
+
+    #[test]
+    fn without_flags_the_thresholds_are_those_of_the_engine() {
+        let settings = settings("");
+        assert_eq!(settings.thresholds, Thresholds::default());
+        assert_eq!(settings.most, Thresholds::default().most);
+        assert_eq!(settings.time_limit, Some(Duration::from_secs(60)));
+    }
+
+    #[test]
+    fn every_threshold_can_be_set() {
+        let line =
+            "--better 50 --share 0.1 --as-good 3,0.01 --complete 2 --beam 1 --most-effects 2";
+        let found = settings(&format!("{line} --time-limit none"));
+        let thresholds = Thresholds {
+            better: 50.0,
+            share: 0.1,
+            as_good: (3.0, 0.01),
+            complete: 2.0,
+            beam: 1,
+            most: 2,
+            ..Thresholds::default()
+        };
+        assert_eq!((found.thresholds, found.most), (thresholds, 2));
+        assert_eq!(found.time_limit, None);
+        assert_eq!(settings("--as-good 3 --most 1").thresholds.as_good, (3.0, 0.0));
+    }
+
+    #[test]
+    fn thresholds_that_make_no_sense_are_refused() {
+        for line in [
+            "--better 0",
+            "--better nan",
+            "--share 1",
+            "--as-good -1",
+            "--as-good 1,2",
+            "--complete inf",
+            "--beam 0",
+            "--time-limit 0",
+        ] {
+            let words = std::iter::once("aep").chain(line.split_whitespace());
+            assert!(Line::try_parse_from(words).is_err(), "{line}");
+        }
     }
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use friction_ident::Model;
 use friction_ident::family::FrictionFamily;
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::data_check::check;
 use missing_physics::fit::Fit;
 use missing_physics::views::View;
@@ -77,6 +78,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         discovery: &discovery,
         loaded: &loaded,
         check: &data,
+        thresholds: Thresholds::default(),
         more: vec![("models", in_json(&args.model, &views))],
     };
     let files = report.save(&args.results)?;

@@ -2,24 +2,29 @@
 
 use std::path::PathBuf;
 
+use aep_studio::words;
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::confirm::Confirmed;
 use missing_physics::data_check::check;
 use missing_physics::report::Verdict;
 use missing_physics::{Discovery, discover};
 
 use crate::app::Global;
-use crate::args::{EffectNames, MappingArgs, OutputArgs, RunArgs, words};
+use crate::args::{self, EffectNames, MappingArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::steps;
+use crate::stop::Watch;
 
 /// Find out which physical effect a model of the drive lacks
 ///
-/// Fits the base model, shows where it fails, ranks every effect of the library against placebos,
-/// adds the best, refits, and repeats until nothing is gained on data that was held out.
+/// Fits the base model, shows where it fails, and searches the sets of effects by how well a model with them
+/// predicts each sample from those before it: the set stands that gains clearly on what was held out, and
+/// the verdict says whether the model then errs more than the sensors make it. Errors of the force, of
+/// windows and of simulations are shown and decide nothing.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -58,6 +63,7 @@ Examples:
   aep discover run.csv --base coulomb,viscous --json -   for scripts
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
+  aep discover run.csv --explain                         everything that was compared, and why
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
   aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
 
@@ -73,6 +79,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         [] => None,
         paths => Some(args.mapping.read_all(paths)?),
     };
+    let watch = Watch::new(None);
     let quiet = global.quiet || args.results.own_stdout();
     let data = check(&loaded.recording);
     if !quiet {
@@ -82,10 +89,13 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth)?;
     progress.say("fitting the base model");
+    progress.within(settings.time_limit);
     let mut discovery = discover(&family, &settings, &mut progress)?;
     let mut more = Vec::new();
     let mut confirmed = String::new();
-    if let Some(others) = &others {
+    // Who has asked for an end wants no more than what there is.
+    let go_on = !watch.is_interrupted();
+    if let Some(others) = others.as_ref().filter(|_| go_on) {
         progress.say("confirming it on the other recordings");
         let other = steps::family(&others.recording, args.bandwidth)?.with_stroke_of(&family);
         steps::same_axes(&family, &other)?;
@@ -95,7 +105,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         discovery.confirmation = Some(found);
     }
     let mut proposal = Proposal::default();
-    if let Some(path) = &args.experiment {
+    if let Some(path) = args.experiment.as_ref().filter(|_| go_on) {
         progress.say("looking for an experiment that tells them apart");
         let rivals = discovery.ambiguous.first().map_or(&[][..], |choice| &choice.effects);
         let last = discovery.ladder.last().map_or(&[][..], |rung| &rung.effects);
@@ -103,18 +113,26 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         more.append(&mut proposal.more);
     }
     drop(progress);
-    let report =
-        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more };
+    let report = Report {
+        kind: Kind::Discovery,
+        discovery: &discovery,
+        loaded: &loaded,
+        check: &data,
+        thresholds: settings.thresholds,
+        more,
+    };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, path)?;
     }
     if quiet {
-        return Ok(());
+        return watch.end();
     }
     let next = if args.data.is_empty() { crate::example::next() } else { next(args, &discovery) };
     let files = if files.is_empty() { files } else { format!("\n{files}") };
-    output::print(&(story(&discovery) + &confirmed + &proposal.text + &files + &next))
+    let story = story(&discovery, &settings.thresholds, args.run.explain);
+    output::print(&(story + &confirmed + &proposal.text + &files + &next))?;
+    watch.end()
 }
 
 fn save_model(
@@ -131,7 +149,7 @@ fn save_model(
 }
 
 /// The loop as it went: where the base model failed, what was tried, what was gained.
-fn story(discovery: &Discovery) -> String {
+fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> String {
     let mut text = String::new();
     if let Some(base) = discovery.ladder.first() {
         text += &heading(&format!("Where the base model fails: {}", base.effects.join(" + ")));
@@ -146,7 +164,14 @@ fn story(discovery: &Discovery) -> String {
             None => "nothing is added".to_owned(),
         };
         text += &heading(&format!("Which effect is missing, rung {}: {outcome}", rung + 1));
+        if let Some(why) = words::why_nothing(discovery, rung, thresholds) {
+            text += &output::why(&why);
+        }
         text += &output::ranking(candidates, Columns::Best);
+    }
+    if explain && !discovery.decisions.is_empty() {
+        text += &heading("What was compared");
+        text += &output::compared(discovery, thresholds);
     }
     if discovery.ladder.len() > 1 {
         text += &heading("Where the last model fails");
@@ -165,17 +190,18 @@ fn story(discovery: &Discovery) -> String {
     }
     text += &heading("The ladder");
     text += &output::ladder(discovery, "base model");
-    text + &output::verdict(discovery)
+    text += &output::verdict(discovery);
+    text + &if explain { String::new() } else { output::comparisons(discovery) }
 }
 
-fn next(args: &Args, discovery: &Discovery) -> String {
-    if discovery.verdict == Verdict::Ambiguous && args.experiment.is_none() {
-        let command = format!("aep discover {} --experiment next.csv", words(&args.data));
+fn next(given: &Args, discovery: &Discovery) -> String {
+    if discovery.verdict == Verdict::Ambiguous && given.experiment.is_none() {
+        let command = format!("aep discover {} --experiment next.csv", args::words(&given.data));
         return format!("\n{}\n", output::dim(&format!("What to run next: {command}")));
     }
-    if args.results.html.is_some() {
+    if given.results.html.is_some() {
         return String::new();
     }
-    let command = format!("aep discover {} --html report.html", words(&args.data));
+    let command = format!("aep discover {} --html report.html", args::words(&given.data));
     format!("\n{}\n", output::dim(&format!("All this with plots: {command}")))
 }

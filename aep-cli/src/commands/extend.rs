@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::data_check::check;
 
 use crate::app::Global;
@@ -74,7 +75,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), more: Vec::new() };
     let mut files = report.save(&args.results)?;
     output::save(&args.output, &(extended.to_json()? + "\n"))?;
     files += &written("model", &args.output);

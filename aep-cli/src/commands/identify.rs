@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use friction_ident::family::FrictionFamily;
 use missing_physics::Recording;
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::data_check::check;
 
 use crate::app::Global;
@@ -112,7 +113,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), more: Vec::new() };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         output::save(path, &(model.to_json()? + "\n"))?;

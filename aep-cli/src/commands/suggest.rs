@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use aep_studio::words;
 use missing_physics::data_check::check;
 use missing_physics::suggest;
 
@@ -13,14 +14,15 @@ use crate::output::{self, Columns, heading};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::steps;
+use crate::stop::Watch;
 
 /// Most effects that one experiment is to tell apart.
 const RIVALS: usize = 3;
 
 /// Suggest the effect that a model lacks, without adding it
 ///
-/// The model's effects are refitted to the blocks that are not held out; every other effect is tried
-/// on what they leave.
+/// The model's effects are refitted; every other effect is tried beside them, by what it gains in predicting
+/// each sample from those before it.
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -52,17 +54,22 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
     let settings = args.run.settings(effects)?;
     let loaded = args.data.read()?;
+    let watch = Watch::new(None);
     let quiet = global.quiet || args.results.own_stdout();
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth)?;
     steps::same_axis(&family, &model)?;
     progress.say("fitting the model");
-    let discovery = suggest(&family, &settings, &mut progress)?;
-    let candidates = discovery.ranking.first().map_or(&[][..], Vec::as_slice);
-    let likely = candidates.iter().filter(|c| c.p_value <= settings.alpha && c.gain > 0.0);
+    progress.within(settings.time_limit);
+    let mut discovery = suggest(&family, &settings, &mut progress)?;
+    let candidates = discovery.ranking.first().cloned().unwrap_or_default();
+    let better = settings.thresholds.better;
+    let likely = candidates.iter().filter(|c| {
+        c.p_value <= settings.alpha && c.gain > 0.0 && c.nats.is_none_or(|nats| nats > better)
+    });
     let mut proposal = Proposal::default();
-    if let Some(path) = &args.experiment {
+    if let Some(path) = args.experiment.as_ref().filter(|_| !watch.is_interrupted()) {
         progress.say("looking for an experiment that tells them apart");
         let rivals: Vec<String> =
             likely.clone().take(RIVALS).map(|candidate| candidate.effect.clone()).collect();
@@ -71,13 +78,22 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let mut likely = likely;
     let likely = likely.next();
     drop(progress);
+    if let Some(summary) = likely.and_then(words::suggestion) {
+        discovery.summary = summary;
+    }
     let data = check(&loaded.recording);
     let more = proposal.more;
-    let report =
-        Report { kind: Kind::Discovery, discovery: &discovery, loaded: &loaded, check: &data, more };
+    let report = Report {
+        kind: Kind::Discovery,
+        discovery: &discovery,
+        loaded: &loaded,
+        check: &data,
+        thresholds: settings.thresholds,
+        more,
+    };
     let files = report.save(&args.results)?;
     if quiet {
-        return Ok(());
+        return watch.end();
     }
     let next = match likely {
         Some(best) => format!(
@@ -86,17 +102,31 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             args.model.display(),
             best.effect
         ),
+        None if words::is_cut(&discovery) => {
+            "No effect was found before the search was stopped.\n".to_owned()
+        }
+        None if candidates.iter().any(|candidate| candidate.nats.is_some()) => {
+            format!("No effect of the library gains the {better} nats that are needed.\n")
+        }
         None => "No effect of the library gains more than chance does.\n".to_owned(),
+    };
+    let compared = if args.run.explain && !discovery.decisions.is_empty() {
+        heading("What was compared") + &output::compared(&discovery, &settings.thresholds)
+    } else {
+        output::comparisons(&discovery)
     };
     let text = heading("Where the model fails")
         + &output::regimes(&discovery.regimes)
         + "\n"
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Which effect is missing")
-        + &output::ranking(candidates, Columns::All)
+        + &output::ranking(&candidates, Columns::All)
+        + &compared
+        + &output::notes(&discovery)
         + &proposal.text
         + "\n"
         + &files
         + &next;
-    output::print(&text)
+    output::print(&text)?;
+    watch.end()
 }

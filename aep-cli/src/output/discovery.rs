@@ -5,6 +5,7 @@ use std::fmt::Write;
 use aep_studio::words;
 use anstyle::AnsiColor;
 use missing_physics::Discovery;
+use missing_physics::ahead::beam::Thresholds;
 use missing_physics::quantity::{number, percent};
 use missing_physics::report::{Candidate, RegimeShare, Rung, SplitError, Verdict, Where};
 
@@ -18,20 +19,31 @@ use super::table::{Align, Table};
 const CHANCE: f64 = 0.05;
 /// How the notes of most coordinates begin.
 const MEAN_ERROR: &str = "largest mean error";
+/// How to read a ranking by prediction errors.
+const RANKING: &str = "share: of the squared prediction error; chance: of as large a gain where errors are shifted in time";
+/// Characters of a line.
+const LINE: u16 = 100;
 /// Width of the bars.
 const BAR: usize = 10;
 
 /// The verdict and its summary.
 pub fn verdict(discovery: &Discovery) -> String {
     let colour = match discovery.verdict {
-        Verdict::EffectsFound | Verdict::NothingMissing => AnsiColor::Green,
-        Verdict::Unexplained | Verdict::Ambiguous | Verdict::Stopped => AnsiColor::Yellow,
+        Verdict::EffectsFound | Verdict::NothingMissing if !words::is_cut(discovery) => {
+            AnsiColor::Green
+        }
+        _ => AnsiColor::Yellow,
     };
     let mut title = words::verdict(discovery).to_uppercase();
     if !discovery.added.is_empty() {
         let _ = write!(title, ": {}", discovery.added.join(", "));
     }
     let mut text = format!("\n{}\n", paint(colour, &title));
+    if let Some(said) = words::completeness(discovery) {
+        let complete = discovery.budget.is_some_and(|budget| budget.complete);
+        let colour = if complete { AnsiColor::Green } else { AnsiColor::Yellow };
+        let _ = writeln!(text, " {}", paint(colour, &said));
+    }
     for line in wrapped(&discovery.summary) {
         let _ = writeln!(text, " {line}");
     }
@@ -92,8 +104,86 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
+/// Why nothing was added.
+pub fn why(text: &str) -> String {
+    wrapped(&format!("Why: {text}.")).iter().map(|line| format!(" {line}\n")).collect()
+}
+
+/// Every comparison, grouped by number of effects.
+pub fn compared(discovery: &Discovery, thresholds: &Thresholds) -> String {
+    let mut text = String::new();
+    for group in words::compared(discovery, thresholds) {
+        let columns = words::COMPARED_HEADINGS.map(|heading| match heading {
+            "set" => (group.title.as_str(), Align::Left),
+            "compared with" | "outcome" => (heading, Align::Left),
+            number => (number, Align::Right),
+        });
+        let mut table = Table::new(&columns).at_most(LINE);
+        for [set, with, difference, needed, times, outcome] in group.rows {
+            // Effects stand below each other: the outcome needs the width.
+            let stacked = |effects: String| effects.replace(" + ", "\n+ ");
+            table.row([stacked(set), stacked(with), difference, needed, times, outcome]);
+        }
+        text += &table.text();
+        text.push('\n');
+    }
+    for line in wrapped(words::COMPARED) {
+        let _ = writeln!(text, " {}", dim(&line));
+    }
+    text
+}
+
+/// How many comparisons there were, and how to see them.
+pub fn comparisons(discovery: &Discovery) -> String {
+    let said = words::comparisons(discovery);
+    said.map(|said| format!(" {}\n", dim(&format!("{said}: --explain shows them"))))
+        .unwrap_or_default()
+}
+
+/// The rungs with what they predict one sample ahead, which decides, and other errors beside it.
+fn ladder_ahead(discovery: &Discovery, first: &str) -> String {
+    let names = words::views_beside(discovery);
+    let headings: Vec<String> =
+        names.iter().map(|name| format!("{}\nerror", name.quantity)).collect();
+    let mut columns = vec![
+        ("rung", Align::Left),
+        ("", Align::Bar),
+        ("prediction\nerror\n(x sensors)", Align::Right),
+        ("gain\n(nats)", Align::Right),
+        ("p-value", Align::Right),
+    ];
+    columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Right)));
+    let mut table = Table::new(&columns).at_most(LINE);
+    let sizes = discovery.ladder.iter().filter_map(|rung| rung.budget);
+    let largest = sizes.filter(|size| size.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
+    let dash = || "-".to_owned();
+    for rung in &discovery.ladder {
+        let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
+        let mut cells = vec![
+            name.replace(" + ", "\n+ "),
+            bar(rung.budget.unwrap_or(0.0) / largest, BAR),
+            rung.budget.map_or_else(dash, words::times),
+            rung.likelihood_gain.map_or_else(dash, words::nats),
+            rung.p_value.map_or_else(dash, words::chance),
+        ];
+        cells.extend(names.iter().map(|name| {
+            rung.error.get(&name.key).map_or_else(dash, |error| name.value(error.validation))
+        }));
+        table.row(cells);
+    }
+    let views: Vec<&str> = names.iter().map(|name| name.quantity.as_str()).collect();
+    let note = format!(
+        "the prediction error decides; errors of {} are on held-out data and decide nothing",
+        views.join(" and ")
+    );
+    table.text() + &if views.is_empty() { String::new() } else { format!(" {}\n", dim(&note)) }
+}
+
 /// The rungs with their errors; `first` is what the lowest one is called.
 pub fn ladder(discovery: &Discovery, first: &str) -> String {
+    if words::has_budget(discovery) {
+        return ladder_ahead(discovery, first);
+    }
     let names = words::errors(discovery);
     let Some(main) = names.first() else {
         return String::new();
@@ -231,43 +321,54 @@ pub enum Columns {
 }
 
 /// Candidates, best first.
-pub fn ranking(candidates: &[Candidate], columns: Columns) -> String {
+pub fn ranking(candidates: &[Candidate], shown_of: Columns) -> String {
     const FEW: usize = 6;
-    let shown = match columns {
+    let shown = match shown_of {
         Columns::Best => candidates.len().min(FEW),
         Columns::All => candidates.len(),
     };
-    let mut table = Table::new(&[
-        ("effect", Align::Left),
+    // Told by what they predict one sample ahead, or by the force that they explain.
+    let ahead = candidates.iter().any(|candidate| candidate.nats.is_some());
+    let mut columns = vec![("effect", Align::Left)];
+    if ahead {
+        columns.push(("gain\n(nats)", Align::Right));
+    }
+    columns.extend([
         ("", Align::Bar),
-        ("gain", Align::Right),
-        ("p-value", Align::Right),
+        (if ahead { "share" } else { "gain" }, Align::Right),
+        (if ahead { "chance" } else { "p-value" }, Align::Right),
         ("size", Align::Left),
     ]);
+    let mut table = Table::new(&columns).at_most(LINE);
     for candidate in &candidates[..shown] {
-        table.row([
-            candidate.effect.clone(),
+        let nats = candidate.nats.map_or_else(|| "-".to_owned(), words::nats);
+        let p_value = if ahead { words::chance } else { words::p_value };
+        let cells = [
             bar(candidate.gain, BAR),
             percent(candidate.gain),
-            words::p_value(candidate.p_value),
-            shortened(&candidate.size),
-        ]);
+            p_value(candidate.p_value),
+            shortened(&candidate.size, if ahead { 32 } else { 46 }),
+        ];
+        let first = std::iter::once(candidate.effect.clone()).chain(ahead.then_some(nats));
+        table.row(first.chain(cells));
     }
     let mut text = table.text();
     if shown < candidates.len() {
         let rest = candidates.len() - shown;
         let _ = writeln!(text, " {}", dim(&format!("and {rest} more that gain less")));
     }
+    if ahead && shown_of == Columns::All {
+        let _ = writeln!(text, " {}", dim(RANKING));
+    }
     text
 }
 
 /// A size of many numbers fits on a line; the page and the JSON have all of it.
-fn shortened(size: &str) -> String {
-    const MOST: usize = 46;
-    if size.chars().count() <= MOST {
+fn shortened(size: &str, most: usize) -> String {
+    if size.chars().count() <= most {
         return size.to_owned();
     }
-    let start: String = size.chars().take(MOST).collect();
+    let start: String = size.chars().take(most).collect();
     let end = start.rfind(", ").unwrap_or(start.len());
     format!("{}, ...", &start[..end])
 }
@@ -301,4 +402,156 @@ fn place(rung: &Rung, name: &str) -> (Option<usize>, Option<usize>) {
     let about = library().find(effect).ok().map(friction_ident::Effect::about);
     // What is unknown comes last.
     (Some(number.unwrap_or(usize::MAX)), about.and_then(|about| about.parameter(parameter)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn estimate(value: f64) -> Value {
+        json!({"value": value, "low": value, "high": value, "unit": "N", "identifiable": true})
+    }
+
+    /// A ladder of one effect; `budget` where it is judged by prediction errors.
+    fn discovery(budget: bool) -> Discovery {
+        let both = |value: f64| json!({"fit": value, "validation": value});
+        let rung = |added: Option<&str>, effects: &[&str], error: f64, times: f64| {
+            let mut rung = json!({"added": added, "effects": effects, "parameters": {"coulomb.F_C": estimate(3.0)},
+                "error": {"force_relative": both(error), "force_rms_N": both(10.0 * error),
+                    "window_rms_m": both(1e-5 * error)},
+                "p_value": added.map(|_| 0.001)});
+            if budget {
+                rung["budget"] = times.into();
+                rung["likelihood_gain"] = if added.is_some() { 812.3.into() } else { Value::Null };
+            }
+            rung
+        };
+        let candidate = json!({"effect": "presliding:free", "gain": 0.31, "p_value": 0.001,
+            "size": "K_1 1.00 N/um, K_2 2.00 N/um, K_3 3.00 N/um, K_4 4.00 N/um", "nats": budget.then_some(812.3)});
+        let decision = |set: &[&str], outcome: &str, difference: f64| {
+            json!({"rung": set.len() - 1, "candidate": set, "compared_with": ["coulomb"], "difference": difference,
+                "standard_error": 15.0, "budget": 1.04, "outcome": outcome, "reason": "the best set of 1"})
+        };
+        let mut json = json!({
+            "verdict": "effects_found", "summary": "Missing: position-friction:fine.",
+            "added": ["position-friction:fine"],
+            "ladder": [rung(None, &["coulomb"], 0.05, 12.52),
+                rung(Some("position-friction:fine"), &["coulomb", "position-friction:fine"], 0.02, 1.04)],
+            "ranking": [[candidate]], "where": [], "ambiguous": [], "noise_floor": {"force_N": 0.1}, "seed": 1,
+            "wall_s": 1.0,
+        });
+        if budget {
+            json["budget"] =
+                json!({"expected": 1e-7, "base": 12.52, "last": 1.04, "complete": true});
+            json["decisions"] = json!([
+                decision(&["coulomb", "position-friction:fine"], "added", 812.3),
+                decision(&["coulomb", "drift"], "worse", 402.0),
+                decision(
+                    &["coulomb", "position-friction:fine", "reversal-decay"],
+                    "too_little",
+                    9.0
+                ),
+            ]);
+        }
+        serde_json::from_value(json).unwrap()
+    }
+
+    fn plain(text: &str) -> String {
+        anstream::adapter::strip_str(text).to_string()
+    }
+
+    #[track_caller]
+    fn fits(text: &str) {
+        for line in plain(text).lines() {
+            assert!(line.chars().count() <= 100, "{}: {line}", line.chars().count());
+        }
+    }
+
+    #[test]
+    fn the_ladder_is_judged_by_prediction_errors_and_fits_a_terminal() {
+        let text = plain(&ladder(&discovery(true), "base model"));
+        for part in [
+            "prediction",
+            "(x sensors)",
+            "12.5",
+            "1.04",
+            "+812",
+            "<= 0.001",
+            "2.00 %",
+            "██████████",
+        ] {
+            assert!(text.contains(part), "'{part}' is not in\n{text}");
+        }
+        assert!(!text.contains("noise floor"), "{text}");
+        fits(&text);
+    }
+
+    #[test]
+    fn without_prediction_errors_the_ladder_is_judged_by_the_force() {
+        let text = plain(&ladder(&discovery(false), "base model"));
+        assert!(
+            text.contains("noise floor") && text.contains("< 0.001") | text.contains("0.001"),
+            "{text}"
+        );
+        assert!(!text.contains("sensors"), "{text}");
+    }
+
+    #[test]
+    fn candidates_are_ranked_in_nats_where_they_have_them() {
+        let text = plain(&ranking(&discovery(true).ranking[0], Columns::All));
+        for part in [
+            "(nats)",
+            "share",
+            "chance",
+            "+812",
+            "31.0 %",
+            "<= 0.001",
+            "K_1 1.00 N/um, K_2 2.00 N/um, ...",
+        ] {
+            assert!(text.contains(part), "'{part}' is not in\n{text}");
+        }
+        fits(&text);
+        let text = plain(&ranking(&discovery(false).ranking[0], Columns::Best));
+        assert!(text.contains("p-value") && !text.contains("nats"), "{text}");
+    }
+
+    #[test]
+    fn the_record_is_a_table_for_each_number_of_effects() {
+        let found = discovery(true);
+        let text = plain(&compared(&found, &Thresholds::default()));
+        for part in [
+            "Sets of 1 effect",
+            "Sets of 2 effects",
+            "+812 ± 15",
+            "> +100",
+            "another is better",
+            "gains too little",
+        ] {
+            assert!(text.contains(part), "'{part}' is not in\n{text}");
+        }
+        fits(&text);
+        assert!(
+            plain(&comparisons(&found)).contains("3 comparisons of models: --explain shows them")
+        );
+        assert_eq!(comparisons(&discovery(false)), "");
+    }
+
+    #[test]
+    fn the_verdict_says_how_complete_the_model_is_and_whether_the_search_was_cut() {
+        let mut found = discovery(true);
+        let text = plain(&verdict(&found));
+        assert!(
+            text.contains("MISSING EFFECT FOUND: position-friction:fine\n complete: 1.04 times"),
+            "{text}"
+        );
+        found.untried = vec!["drift".to_owned()];
+        let text = plain(&verdict(&found));
+        assert!(
+            text.contains("FOUND SO FAR: position-friction:fine")
+                && !text.contains("MISSING EFFECT"),
+            "{text}"
+        );
+        fits(&why(&"a long reason ".repeat(20)));
+    }
 }

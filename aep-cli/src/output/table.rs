@@ -45,6 +45,14 @@ impl Table {
         Self { table, columns }
     }
 
+    /// The table no wider than this where there is no terminal to ask, the margin included.
+    pub fn at_most(mut self, width: u16) -> Self {
+        if !self.table.is_tty() {
+            self.table.set_width(width.saturating_sub(1).min(WIDTH));
+        }
+        self
+    }
+
     /// One row more.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         let cells = cells.into_iter().zip(&self.columns).map(|(text, align)| {

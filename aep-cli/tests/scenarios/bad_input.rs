@@ -122,7 +122,9 @@ fn wrong_usage_is_refused_with_2() {
     desk.aep("").refused(&["Usage: aep"]);
     desk.aep("discovr").refused(&["discover"]);
     desk.aep("discover run.csv --alpha 2").refused(&["--alpha", "probability"]);
-    desk.aep("discover run.csv --time-limit -3").refused(&["--time-limit"]);
+    desk.aep("discover run.csv --time-limit -3").refused(&["--time-limit", "'none'"]);
+    desk.aep("discover run.csv --share 2").refused(&["--share", "a share from 0"]);
+    desk.aep("discover run.csv --better -1").refused(&["--better", "above 0"]);
     desk.aep("discover run.csv --hold first-order").refused(&["zero-order"]);
     desk.aep("discover run.csv --threads 0").refused(&["--threads"]);
     desk.aep("identify run.csv --effects coulomb --algorithm simplex").refused(&["aep, meta-ep"]);

@@ -5,7 +5,7 @@ use crate::harness::{Desk, shared};
 #[test]
 fn without_data_the_example_is_solved_and_the_truth_pointed_at() {
     let desk = Desk::new();
-    let run = desk.aep("discover --json out.json --html out.html -o model.json");
+    let run = desk.aep("discover --time-limit none --json out.json --html out.html -o model.json");
     for part in
         ["The data", "Where the base model fails", "Which effect", "The ladder", "truth.json"]
     {
@@ -27,7 +27,7 @@ fn without_data_the_example_is_solved_and_the_truth_pointed_at() {
 #[test]
 fn the_json_keeps_the_contract() {
     let desk = Desk::new();
-    desk.aep("discover -q --json out.json --most 1").done();
+    desk.aep("discover -q --time-limit none --json out.json --most-effects 1").done();
     let json = desk.json("out.json");
     for key in [
         "verdict",
@@ -50,7 +50,19 @@ fn the_json_keeps_the_contract() {
     }
     assert!(rung["error"]["force_relative"]["fit"].is_f64());
     assert!(rung["p_value"].is_f64());
-    for key in ["effect", "gain", "p_value"] {
+    assert!(rung["budget"].is_f64() && rung["likelihood_gain"].is_f64());
+    for key in ["expected", "base", "last", "complete"] {
+        assert!(json["budget"].get(key).is_some(), "{key}");
+    }
+    for key in ["rung", "candidate", "compared_with", "difference", "standard_error", "outcome"] {
+        assert!(json["decisions"][0].get(key).is_some_and(|value| !value.is_null()), "{key}");
+    }
+    for candidate in json["ranking"].as_array().unwrap().iter().flat_map(|r| r.as_array().unwrap())
+    {
+        assert!(candidate["gain"].is_f64() && candidate["p_value"].is_f64(), "{candidate}");
+        assert!(candidate["nats"].is_f64(), "{candidate}");
+    }
+    for key in ["effect", "gain", "p_value", "nats"] {
         assert!(json["ranking"][0][0].get(key).is_some(), "{key}");
     }
     for key in ["coordinate", "share", "p_value", "note"] {
@@ -62,8 +74,8 @@ fn the_json_keeps_the_contract() {
 #[test]
 fn threads_change_nothing() {
     let desk = Desk::new();
-    desk.aep("discover -q --most 1 --json one.json --threads 1").done();
-    desk.aep("discover -q --most 1 --json two.json --threads 2").done();
+    desk.aep("discover -q --time-limit none --most 1 --json one.json --threads 1").done();
+    desk.aep("discover -q --time-limit none --most 1 --json two.json --threads 2").done();
     let result = |name: &str| {
         let mut json = desk.json(name);
         json["wall_s"] = 0.into();
@@ -76,7 +88,7 @@ fn threads_change_nothing() {
 fn where_nothing_is_hidden_nothing_is_found() {
     let desk = Desk::new();
     desk.challenge("nothing", 1, "c");
-    let run = desk.aep("discover c/recording.csv --json out.json");
+    let run = desk.aep("discover c/recording.csv --time-limit none --json out.json");
     assert!(run.done().contains("NOTHING IS MISSING"));
     let json = desk.json("out.json");
     assert_eq!(json["verdict"], "nothing_missing");
@@ -89,10 +101,58 @@ fn where_nothing_is_hidden_nothing_is_found() {
 fn a_time_limit_keeps_what_was_found() {
     let desk = Desk::new();
     let run = desk.aep("discover --time-limit 0.000001 --json out.json");
-    run.done();
+    let said = run.done();
+    assert!(said.contains("STOPPED BEFORE ANYTHING WAS FOUND"), "{said}");
+    assert!(said.contains("Not tried: ") && !said.contains("MISSING EFFECT"), "{said}");
     let json = desk.json("out.json");
+    assert_eq!(json["verdict"], "stopped");
     assert_eq!(json["ladder"].as_array().unwrap().len(), 1);
     assert!(json["notes"][0].as_str().unwrap().contains("Stopped"));
+}
+
+#[cfg(unix)]
+#[test]
+fn after_ctrl_c_discover_tells_what_it_has() {
+    let desk = Desk::new();
+    // So much to search that it is still on when it is stopped.
+    let line = "discover --time-limit none --better 1 --beam 9 --most-effects 9 --threads 1 --json out.json";
+    let run = desk.interrupted(line, 1.0);
+    assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
+    assert!(run.out.contains("The ladder"), "{}", run.out);
+    assert!(!run.out.contains("MISSING EFFECT"), "{}", run.out);
+    assert!(desk.json("out.json")["notes"][0].as_str().unwrap().contains("Stopped"));
+}
+
+#[test]
+fn every_comparison_is_explained_where_that_is_asked() {
+    let desk = Desk::new();
+    let line = "discover --time-limit none --most-effects 1 --html out.html";
+    let brief = desk.aep(line);
+    assert!(brief.done().contains("--explain shows them"), "{}", brief.out);
+    assert!(!brief.out.contains("What was compared"), "{}", brief.out);
+    let run = desk.aep(&format!("{line} --explain --better 50"));
+    for part in ["What was compared", "Sets of 1 effect", "base model", "needed", "> +50", "added"]
+    {
+        assert!(run.done().contains(part), "'{part}' is not in\n{}", run.out);
+    }
+    assert!(!run.out.contains("--explain shows them"), "{}", run.out);
+    let page = desk.read("out.html");
+    assert!(page.contains("What was compared") && page.contains("&gt; +50"));
+    // A table that nobody watches fits a line of 100 characters.
+    let from = run.out.find("The ladder").unwrap();
+    for line in run.out[from..].lines().take_while(|line| !line.starts_with("MISSING")) {
+        assert!(line.chars().count() <= 100, "{line}");
+    }
+}
+
+#[test]
+fn a_threshold_that_nothing_reaches_adds_nothing_and_says_so() {
+    let desk = Desk::new();
+    let run = desk.aep("discover --time-limit none --most-effects 1 --better 1e9 --json out.json");
+    assert!(run.done().contains("nothing is added"), "{}", run.out);
+    assert!(run.out.contains("Why: the best refused, "), "{}", run.out);
+    assert!(run.out.contains("1000000000 are needed"), "{}", run.out);
+    assert_eq!(desk.json("out.json")["added"].as_array().unwrap().len(), 0);
 }
 
 #[test]
@@ -122,7 +182,8 @@ fn flags_read_other_columns_units_and_gains() {
 fn the_published_axis_gives_the_published_error_and_the_known_asymmetry() {
     let Some(data) = shared("emps/DATA_EMPS.mat") else { return };
     let desk = Desk::new();
-    let run = desk.aep(&format!("discover {} --json out.json --most 1", data.display()));
+    let run = desk
+        .aep(&format!("discover {} --time-limit none --json out.json --most 1", data.display()));
     assert!(run.done().contains("recognised as EMPS"));
     let json = desk.json("out.json");
     assert_eq!(json["added"][0], "asymmetry");
@@ -139,7 +200,7 @@ fn an_experiment_is_a_motion_that_the_axis_can_follow() {
     desk.challenge("stribeck", 1, "c");
     desk.aep("identify c/recording.csv -q --effects coulomb,viscous,offset -o base.json").done();
     let run = desk.aep(
-        "suggest c/recording.csv --model base.json --experiment next.csv --json out.json --seed 3",
+        "suggest c/recording.csv --time-limit none --model base.json --experiment next.csv --json out.json --seed 3",
     );
     assert!(run.done().contains("An experiment to tell stribeck"), "{}", run.out);
     let experiment = &desk.json("out.json")["experiment"];
@@ -155,7 +216,7 @@ fn an_experiment_is_a_motion_that_the_axis_can_follow() {
 #[test]
 fn where_nothing_is_ambiguous_no_experiment_is_written() {
     let desk = Desk::new();
-    let run = desk.aep("discover --experiment next.csv --json out.json");
+    let run = desk.aep("discover --time-limit none --experiment next.csv --json out.json");
     assert!(run.done().contains("No experiment is written"));
     assert!(!desk.path("next.csv").exists());
     assert!(desk.json("out.json")["experiment"].is_null());
@@ -177,7 +238,7 @@ fn a_servo_lacks_load_friction_at_one_gain_and_the_other_gain_confirms_it() {
         let desk = Desk::new();
         let run = desk.aep(&format!(
             "discover {data} --force duty*v_in_V --base coulomb,viscous,gravity-pendulum \
-             --validate {others} --json out.json --html out.html"
+             --time-limit none --validate {others} --json out.json --html out.html"
         ));
         assert!(run.done().contains("switched off"));
         for said in [run.out.clone(), desk.read("out.html")] {
@@ -213,7 +274,7 @@ fn a_dent_in_the_way_is_no_effect_of_the_library_and_can_be_added_as_a_generic_t
     let rows: Vec<String> = lines.map(dented).collect();
     desk.write("dent.csv", format!("{header}\n{}\n", rows.join("\n")));
     desk.write("dent.toml", desk.read("c/recording.toml"));
-    desk.aep("discover dent.csv --json d.json -o m.json").done();
+    desk.aep("discover dent.csv --time-limit none --json d.json -o m.json").done();
     let found = desk.json("d.json");
     assert_eq!(found["verdict"], "unexplained");
     assert_eq!(found["added"].as_array().unwrap().len(), 0, "{}", found["added"]);

@@ -36,6 +36,27 @@ fn units_of_the_data_stand_in_the_help() {
 }
 
 #[test]
+fn thresholds_and_limits_stand_in_the_help_with_their_defaults() {
+    let desk = Desk::new();
+    for command in ["discover", "suggest"] {
+        let help = desk.aep(&format!("{command} --help"));
+        for part in [
+            "--better",
+            "100",
+            "--share",
+            "--as-good",
+            "--complete",
+            "--beam",
+            "--most-effects",
+            "best so far",
+            "60",
+        ] {
+            assert!(help.done().contains(part), "{command} {part}");
+        }
+    }
+}
+
+#[test]
 fn effects_are_listed_with_equations_and_told_one_by_one() {
     let desk = Desk::new();
     let list = desk.aep("effects");

@@ -22,7 +22,8 @@ fn the_loop_by_hand_finds_and_adds_the_hidden_effect() {
     let views = &desk.json("before.json")["views"];
     assert!(views[0]["metrics"]["validation"]["fit_percent"].is_f64());
 
-    let suggested = desk.aep(&format!("suggest {data} --model model.json --json suggested.json"));
+    let suggested = desk
+        .aep(&format!("suggest {data} --time-limit none --model model.json --json suggested.json"));
     assert!(suggested.done().contains("--add stribeck"), "{}", suggested.out);
     let ranking = &desk.json("suggested.json")["ranking"][0];
     assert_eq!(ranking[0]["effect"], "stribeck");

@@ -9,13 +9,66 @@ use crate::words::{self, ErrorName};
 const LEAD: &str = "Each rung is one effect more. What counts is the error on held-out data, \
     which took no part in the fit; the line marks the noise floor, as estimated from the data.";
 
+const AHEAD: &str = "Each rung is one effect more. What counts is the error of predictions one sample ahead, in \
+    multiples of what the sensors alone make; the line marks what they make. The errors on held-out data \
+    beside it are views that decide nothing.";
+
 /// The section of the ladder.
 pub(super) fn section(discovery: &Discovery) -> String {
+    if words::has_budget(discovery) {
+        let body = bars_ahead(discovery) + &numbers_ahead(discovery);
+        return html::section("ladder", "The ladder", AHEAD, &body);
+    }
     let Some(name) = words::main_error(discovery) else {
         return String::new();
     };
     let body = format!("{}{}", bars(discovery, &name), numbers(discovery));
     html::section("ladder", "The ladder", LEAD, &body)
+}
+
+/// Prediction errors as bars.
+fn bars_ahead(discovery: &Discovery) -> String {
+    let sizes = discovery.ladder.iter().filter_map(|rung| rung.budget);
+    let largest = sizes.filter(|size| size.is_finite()).fold(1.0, f64::max);
+    let row = |rung: &Rung| {
+        let size = rung.budget.filter(|size| size.is_finite())?;
+        Some(format!(
+            "<div class=rung><span class=name>{}</span><span class=track>\
+             <span class=held style=\"width:{:.2}%\"></span><span class=floor style=\"left:{:.2}%\"></span></span>\
+             <span class=value>{} ×</span></div>",
+            escape(&words::rung(rung)),
+            100.0 * (size / largest).clamp(0.0, 1.0),
+            100.0 / largest,
+            escape(&words::times(size)),
+        ))
+    };
+    let rows: String = discovery.ladder.iter().filter_map(row).collect();
+    let key = "<div class=legend><span><i class=c1></i>prediction error</span>\
+               <span><i class=floor></i>what the sensors make</span></div>";
+    format!("{key}<div class=ladder>{rows}</div>")
+}
+
+fn numbers_ahead(discovery: &Discovery) -> String {
+    let names = words::views_beside(discovery);
+    let fixed = ["Rung", "#Prediction error (× sensors)", "#Gain (nats)", "#p-value"];
+    let mut headings: Vec<String> = fixed.map(str::to_owned).to_vec();
+    headings.extend(names.iter().map(|name| format!("#{} (held out)", name.heading())));
+    let dash = || "-".to_owned();
+    let row = |rung: &Rung| {
+        let mut cells = vec![
+            words::rung(rung),
+            rung.budget.map_or_else(dash, words::times),
+            rung.likelihood_gain.map_or_else(dash, words::nats),
+            rung.p_value.map_or_else(dash, words::chance),
+        ];
+        cells.extend(names.iter().map(|name| {
+            rung.error.get(&name.key).map_or_else(dash, |error| name.value(error.validation))
+        }));
+        cells.iter().map(|cell| escape(cell)).collect()
+    };
+    let rows: Vec<Vec<String>> = discovery.ladder.iter().map(row).collect();
+    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
+    table(&headings, &rows)
 }
 
 fn bars(discovery: &Discovery, name: &ErrorName) -> String {

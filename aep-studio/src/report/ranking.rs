@@ -5,28 +5,44 @@ use missing_physics::quantity::percent;
 use missing_physics::report::Candidate;
 
 use crate::html::{self, bar, escape, table};
+use crate::report::Source;
 use crate::words;
 
 const LEAD: &str = "Every effect of the library, tried on what the model of the rung leaves. Gain: share of \
     the held-out squared error it would remove. p-value: chance of as large a gain by any effect \
     where none is missing.";
 
+const AHEAD: &str = "Every effect of the library, beside the model of the rung. Gain: held-out log-likelihood of the \
+    prediction errors, in nats (to first order where the effect promised too little to be fitted). Share: \
+    of the squared prediction error. Chance: of as large a gain by any effect where the errors are shifted \
+    in time against the motion.";
+
 /// The section of the rankings, one foldable list per rung.
-pub(super) fn section(discovery: &Discovery) -> String {
+pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
     let lists: String = discovery
         .ranking
         .iter()
         .enumerate()
         .filter(|(_, candidates)| !candidates.is_empty())
-        .map(|(rung, candidates)| list(discovery, rung, candidates))
+        .map(|(rung, candidates)| list((discovery, source), rung, candidates))
         .collect();
     if lists.is_empty() {
         return String::new();
     }
-    html::section("ranking", "Which effect", LEAD, &lists)
+    let ahead = discovery.ranking.iter().any(|candidates| is_ahead(candidates));
+    html::section("ranking", "Which effect", if ahead { AHEAD } else { LEAD }, &lists)
 }
 
-fn list(discovery: &Discovery, rung: usize, candidates: &[Candidate]) -> String {
+/// Whether candidates are told by what they gain one sample ahead.
+fn is_ahead(candidates: &[Candidate]) -> bool {
+    candidates.iter().any(|candidate| candidate.nats.is_some())
+}
+
+fn list(
+    (discovery, source): (&Discovery, &Source),
+    rung: usize,
+    candidates: &[Candidate],
+) -> String {
     let next = discovery.ladder.get(rung + 1).and_then(|next| next.added.as_deref());
     let outcome = next.map_or_else(
         || "nothing was added".to_owned(),
@@ -39,22 +55,35 @@ fn list(discovery: &Discovery, rung: usize, candidates: &[Candidate]) -> String 
     };
     let added: Vec<&str> =
         next.map(|names| names.split('+').map(str::trim).collect()).unwrap_or_default();
-    let rows: Vec<Vec<String>> = candidates.iter().map(|c| row(c, &added)).collect();
+    let ahead = is_ahead(candidates);
+    let rows: Vec<Vec<String>> = candidates.iter().map(|c| row(c, &added, ahead)).collect();
+    let headings: &[&str] = if ahead {
+        &["Effect", "Size", "#Gain, nats", "", "#Share", "#Chance"]
+    } else {
+        &["Effect", "Size", "", "#Gain", "#p-value"]
+    };
+    let why = words::why_nothing(discovery, rung, &source.thresholds);
+    let why = why.map(|why| format!("<p>Why: {}.</p>", escape(&why))).unwrap_or_default();
     let open = if rung == 0 { " open" } else { "" };
     format!(
-        "<details{open}><summary>{model}: {outcome}</summary>{}</details>",
-        table(&["Effect", "Size", "", "#Gain", "#p-value"], &rows)
+        "<details{open}><summary>{model}: {outcome}</summary>{why}{}</details>",
+        table(headings, &rows)
     )
 }
 
-fn row(candidate: &Candidate, added: &[&str]) -> Vec<String> {
+fn row(candidate: &Candidate, added: &[&str], ahead: bool) -> Vec<String> {
     let chosen = added.contains(&candidate.effect.as_str());
     let name = escape(&candidate.effect);
-    vec![
-        if chosen { format!("<b>{name}</b>") } else { name },
-        escape(&candidate.size),
+    let mut cells =
+        vec![if chosen { format!("<b>{name}</b>") } else { name }, escape(&candidate.size)];
+    if ahead {
+        cells.push(escape(&candidate.nats.map_or_else(|| "-".to_owned(), words::nats)));
+    }
+    let p_value = if ahead { words::chance } else { words::p_value };
+    cells.extend([
         bar(candidate.gain, if candidate.p_value <= 0.05 { "held" } else { "quiet" }),
         percent(candidate.gain),
-        escape(&words::p_value(candidate.p_value)),
-    ]
+        escape(&p_value(candidate.p_value)),
+    ]);
+    cells
 }

@@ -1,7 +1,7 @@
 //! The verdict, on top and in words.
 
 use missing_physics::Discovery;
-use missing_physics::report::Verdict;
+use missing_physics::report::{Budget, Verdict};
 
 use crate::html::{concat, escape};
 use crate::report::Source;
@@ -10,13 +10,14 @@ use crate::words;
 /// Head of the page: verdict, summary, and the numbers that carry it.
 pub(super) fn head(discovery: &Discovery, source: &Source) -> String {
     let tone = match discovery.verdict {
-        Verdict::EffectsFound | Verdict::NothingMissing => "good",
-        Verdict::Unexplained | Verdict::Ambiguous | Verdict::Stopped => "doubt",
+        Verdict::EffectsFound | Verdict::NothingMissing if !is_doubtful(discovery) => "good",
+        _ => "doubt",
     };
     format!(
-        "<header class={tone}><p class=file>{}</p><h1>{}</h1><p class=summary>{}</p>{}</header>\n",
+        "<header class={tone}><p class=file>{}</p><h1>{}</h1>{}<p class=summary>{}</p>{}</header>\n",
         escape(&source.name),
         headline(discovery),
+        completeness(discovery),
         escape(&discovery.summary),
         numbers(discovery),
     )
@@ -34,6 +35,11 @@ pub(super) fn plain_head(discovery: &Discovery, source: &Source) -> String {
     )
 }
 
+/// Whether the search was cut or the model leaves more than the sensors make.
+fn is_doubtful(discovery: &Discovery) -> bool {
+    words::is_cut(discovery) || discovery.budget.is_some_and(|budget| !budget.complete)
+}
+
 fn headline(discovery: &Discovery) -> String {
     let verdict = words::verdict(discovery);
     if discovery.added.is_empty() {
@@ -45,6 +51,23 @@ fn headline(discovery: &Discovery) -> String {
     format!("{}: {chips}", escape(verdict))
 }
 
+fn completeness(discovery: &Discovery) -> String {
+    let said = words::completeness(discovery);
+    said.map(|text| format!("<p class=budget>The model is {}.</p>", escape(&text)))
+        .unwrap_or_default()
+}
+
+/// What the models leave one sample ahead.
+fn ahead(budget: &Budget, several: bool) -> Vec<(String, String)> {
+    let times = |value: f64| format!("{} ×", words::times(value));
+    let first = if several { "the base model" } else { "the model" };
+    let mut facts = vec![(times(budget.base), format!("what the sensors make is left by {first}"))];
+    if several {
+        facts.push((times(budget.last), "with what was added".to_owned()));
+    }
+    facts
+}
+
 fn numbers(discovery: &Discovery) -> String {
     let Some(name) = words::main_error(discovery) else {
         return String::new();
@@ -52,7 +75,8 @@ fn numbers(discovery: &Discovery) -> String {
     let at = |rung: Option<&missing_physics::report::Rung>| {
         rung.and_then(|rung| rung.error.get(&name.key)).map(|error| error.validation)
     };
-    let mut facts = Vec::new();
+    let several = discovery.ladder.len() > 1;
+    let mut facts = discovery.budget.map(|budget| ahead(&budget, several)).unwrap_or_default();
     let (first, last) = (at(discovery.ladder.first()), at(discovery.ladder.last()));
     if let Some(first) = first {
         facts.push((

@@ -65,6 +65,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
     discovery
 }
 
+/// Note of a search that was cut, by Ctrl-C or at the end of its time.
+const STOPPED: &str = "Stopped before the end: what is told is what was found so far.";
+
 struct Report<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
     ahead: &'a dyn Ahead,
@@ -113,12 +116,13 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             generic_term: None,
             noise_floor,
             detection_limits: self.limits(),
-            decisions: self.found.decisions.clone(),
-            budget: Some(budget),
+            decisions: self.found.decisions.iter().map(finite).collect(),
+            // Sensors of which nothing is known make no budget.
+            budget: Some(budget).filter(|b| [b.expected, b.base, b.last].iter().all(|x| x.is_finite())),
             untried: self.names(&self.found.untried),
             seed: 0,
             wall_s: 0.0,
-            notes: self.found.notes.clone(),
+            notes: self.notes(),
             diagnosis: None,
             diagnosis_base: None,
             views: Vec::new(),
@@ -127,6 +131,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         };
         diagnosis::attach(family, &base_fit, &last_fit, self.settings.seed, &mut discovery);
         discovery
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let cut = self.found.stopped.then(|| STOPPED.to_owned());
+        cut.into_iter().chain(self.found.notes.iter().cloned()).collect()
     }
 
     fn names(&self, terms: &[usize]) -> Vec<String> {
@@ -203,8 +212,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             error: ladder::errors(self.family, fit, split),
             p_value: k.and_then(|k| self.found.p_values.get(k).copied()),
             metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), split)),
-            likelihood_gain: gain.map(|gain| gain.nats),
-            budget: Some(node.scale / self.ahead.budget()),
+            likelihood_gain: gain.map(|gain| gain.nats).filter(|nats| nats.is_finite()),
+            budget: Some(node.scale / self.ahead.budget()).filter(|times| times.is_finite()),
         }
     }
 
@@ -231,9 +240,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             let each = ranked.rows.iter().map(|(term, model, nats)| Candidate {
                 effect: self.family.terms()[*term].name.clone(),
                 gain: share(*nats, ranked.points),
-                p_value: chance::p_value(*nats, &ranked.chance),
+                // A gain that is no number is none.
+                p_value: if nats.is_nan() { 1.0 } else { chance::p_value(*nats, &ranked.chance) },
                 size: self.size(*term, model),
-                nats: Some(*nats),
+                nats: Some(*nats).filter(|nats| nats.is_finite()),
             });
             each.collect()
         };
@@ -302,10 +312,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                  library explains that.",
                 budget.last
             ),
-            Verdict::Stopped => "The search was cut short before anything could be said.".to_owned(),
+            Verdict::Stopped => "Stopped: the search was cut before anything could be said.".to_owned(),
             Verdict::EffectsFound | Verdict::Ambiguous => format!(
-                "Missing: {}. With it the prediction error falls from {:.2} to {:.2} times what the sensors make, \
+                "{}: {}. With it the prediction error falls from {:.2} to {:.2} times what the sensors make, \
                  that of the {name} from {first:.2} % to {last:.2} %.",
+                if self.found.stopped { "Found so far" } else { "Missing" },
                 added.join(", "),
                 budget.base,
                 budget.last
@@ -313,11 +324,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         };
         if !budget.complete && verdict != Verdict::Stopped {
             if !added.is_empty() {
-                let _ = write!(
-                    text,
-                    " The model is still incomplete: {:.1} times what the sensors make is left.",
-                    budget.last
-                );
+                // How much is left has been said.
+                text.push_str(" The model is still incomplete.");
             }
             for place in self.found.places.iter().take(1) {
                 let _ = write!(text, " {place}");
@@ -337,19 +345,38 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         }
         if self.found.stopped {
             let untried = self.names(&self.found.untried);
-            let _ = write!(
-                text,
-                " Time ran out{}.",
-                if untried.is_empty() { String::new() } else { format!("; not tried: {}", untried.join(", ")) }
-            );
+            if verdict != Verdict::Stopped {
+                text.push_str(" Stopped before the end of the search.");
+            }
+            if !untried.is_empty() {
+                let _ = write!(text, " Not tried: {}.", untried.join(", "));
+            }
         }
         text
     }
 }
 
-/// Share of the squared error that a gain in log-likelihood of so many errors stands for.
+/// Share of the squared error that a gain in log-likelihood of so many errors stands for; what makes it more than
+/// twice as large is told as twice.
 fn share(nats: f64, points: f64) -> f64 {
-    1.0 - (-2.0 * nats / points.max(1.0)).exp()
+    // The larger of the two is the number where one is none.
+    (1.0 - (-2.0 * nats / points.max(1.0)).exp()).max(-1.0)
+}
+
+/// The decision in numbers that a file can hold.
+fn finite(decision: &Decision) -> Decision {
+    let numbers = [decision.difference, decision.standard_error, decision.budget];
+    if numbers.iter().all(|number| number.is_finite()) {
+        return decision.clone();
+    }
+    let or_zero = |number: f64| if number.is_finite() { number } else { 0.0 };
+    Decision {
+        difference: or_zero(decision.difference),
+        standard_error: or_zero(decision.standard_error),
+        budget: or_zero(decision.budget),
+        reason: "its prediction errors are not finite".to_owned(),
+        ..decision.clone()
+    }
 }
 
 /// Decisions in one line each, for people.
@@ -370,4 +397,31 @@ pub fn lines(decisions: &[Decision]) -> Vec<String> {
             )
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::decision::Outcome;
+
+    #[test]
+    fn numbers_that_are_none_do_not_reach_a_file() {
+        let decision = Decision {
+            rung: 1,
+            candidate: vec!["a".to_owned()],
+            compared_with: Vec::new(),
+            difference: f64::NAN,
+            standard_error: 1.0,
+            budget: f64::INFINITY,
+            outcome: Outcome::TooLittle,
+            reason: String::new(),
+        };
+        let told = finite(&decision);
+        assert_eq!((told.difference, told.standard_error, told.budget), (0.0, 1.0, 0.0));
+        assert!(told.reason.contains("not finite"));
+        assert_eq!(share(f64::NAN, 10.0), -1.0);
+        assert_eq!(share(-1e9, 10.0), -1.0);
+        assert_eq!(share(f64::INFINITY, 10.0), 1.0);
+        assert!((share(5.0, 1000.0) - 0.00995).abs() < 1e-5);
+    }
 }
