@@ -14,6 +14,8 @@ use crate::predictor::{Predictor, Wave};
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
 const MOST_SAMPLES: usize = 12_000;
+/// Starts of a second body that are fitted: its valleys are narrow.
+const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
 const KEPT: usize = 4;
 /// Fewest periods in a stroke: fewer are no ripple but a profile.
@@ -125,8 +127,10 @@ impl Ahead for View<'_> {
     }
 
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {
-        let plants: Result<Vec<(Model, usize)>, _> =
-            models.iter().map(|(fitted, setting)| Ok((self.family.model(fitted)?, *setting))).collect();
+        let plants: Result<Vec<(Model, usize)>, _> = models
+            .iter()
+            .map(|(fitted, setting)| Ok((self.family.model(fitted)?, *setting)))
+            .collect();
         let ahead = self.ahead;
         plants.map_or_else(
             // A combination that is no plant predicts nothing.
@@ -168,6 +172,10 @@ impl Ahead for View<'_> {
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
         self.family.in_flexible_form(model, term)
+    }
+
+    fn starts(&self, term: usize) -> usize {
+        if self.family.is_second_body(term) { SECOND_BODIES } else { 1 }
     }
 
     fn is_candidate(&self, term: usize) -> bool {

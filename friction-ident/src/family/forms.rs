@@ -1,7 +1,7 @@
 //! Forms of effects one sample ahead: which one is more flexible, and where it begins.
 
-use missing_physics::ahead::Trial;
 use missing_physics::Fitted;
+use missing_physics::ahead::Trial;
 
 use super::FrictionFamily;
 
@@ -34,8 +34,9 @@ const ONLY_FLEXIBLE: [&str; 6] = [
 ];
 /// Share of the mass that a second body begins with.
 const SECOND_MASS: f64 = 0.5;
-/// Shares of the friction that it is tried with.
-const SHARES: [f64; 2] = [0.3, 0.55];
+/// Shares of the friction that it is tried with, behind a coupling and behind a gap.
+const SHARES: [f64; 2] = [0.35, 0.6];
+const BEHIND_GAP: [f64; 3] = [0.35, 0.55, 0.75];
 /// Trial frequencies of a coupling, from the lowest, Hz, to this share of the sampling frequency.
 const FREQUENCIES: (usize, f64, f64) = (10, 3.0, 0.25);
 /// Trial gaps of a backlash, from this many standard deviations of the position to a share of the stroke.
@@ -45,6 +46,12 @@ const CONTACT: f64 = 150.0;
 const DAMPING: (f64, f64) = (0.1, 0.05);
 
 impl FrictionFamily {
+    /// Whether a term is a second body with friction of its own.
+    pub(super) fn is_second_body(&self, term: usize) -> bool {
+        self.terms[term].parameters.iter().any(|p| p.name == "F_L")
+            && self.terms[term].name.contains(':')
+    }
+
     /// Whether a term is tried by itself, not only in the place of another form.
     pub(super) fn is_candidate(&self, term: usize) -> bool {
         !ONLY_FLEXIBLE.contains(&self.terms[term].name.as_str())
@@ -136,7 +143,12 @@ impl FrictionFamily {
         Some(self.second_bodies(model, term, &shapes))
     }
 
-    fn second_bodies(&self, model: &Fitted, term: usize, shapes: &[Vec<(&str, f64)>]) -> Vec<Trial> {
+    fn second_bodies(
+        &self,
+        model: &Fitted,
+        term: usize,
+        shapes: &[Vec<(&str, f64)>],
+    ) -> Vec<Trial> {
         let parameters = &self.terms[term].parameters;
         let mass = model.values.first().copied().unwrap_or(1.0);
         let level = self.value(model, "coulomb", "F_C").unwrap_or(0.0);
@@ -144,7 +156,9 @@ impl FrictionFamily {
         let reduced = mass * SECOND_MASS * (1.0 - SECOND_MASS);
         let stiffness = (std::f64::consts::TAU * CONTACT).powi(2) * reduced;
         let mut trials = Vec::new();
-        for share in SHARES {
+        let shares =
+            if parameters.iter().any(|p| p.name == "b") { &BEHIND_GAP[..] } else { &SHARES };
+        for &share in shares {
             for shape in shapes {
                 let mut base = model.clone();
                 base.values[0] = mass * (1.0 - SECOND_MASS);
@@ -157,7 +171,9 @@ impl FrictionFamily {
                     "k" => Some(stiffness),
                     _ => shape.iter().find(|(known, _)| *known == name).map(|(_, value)| *value),
                 };
-                let values = parameters.iter().map(|p| value(&p.name).unwrap_or(p.start).clamp(p.lower, p.upper));
+                let values = parameters
+                    .iter()
+                    .map(|p| value(&p.name).unwrap_or(p.start).clamp(p.lower, p.upper));
                 let values: Vec<f64> = values.collect();
                 trials.push(Trial { model: base.with(term, &values), amplitudes: Vec::new() });
             }

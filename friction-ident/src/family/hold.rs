@@ -26,7 +26,8 @@ pub(super) fn decided(
     recording: &Recording,
     options: &Options,
 ) -> Result<FrictionFamily, PreparationError> {
-    let with = |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
+    let with =
+        |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
     let (sampled, held) = (with(Hold::Sampled)?, with(Hold::ZeroOrder)?);
     let (Some(a), Some(b)) = (simple(&sampled), simple(&held)) else { return Ok(sampled) };
     let scale = a.scale.min(b.scale);
@@ -49,6 +50,7 @@ fn simple(family: &FrictionFamily) -> Option<Node> {
     let everywhere = vec![1.0; family.target().len()];
     let start = search::identify(family, &terms, &everywhere, 1).fit.model;
     let mut observer = ();
-    let search = Search::new(family, ahead, Thresholds::default(), Vec::new(), &|| false, &mut observer);
+    let search =
+        Search::new(family, ahead, Thresholds::default(), Vec::new(), &|| false, &mut observer);
     Some(search.base(start))
 }

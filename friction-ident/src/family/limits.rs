@@ -154,7 +154,7 @@ impl Limits {
         let (low, high) = parameter.range(self.axis);
         let (from, to) = match parameter.quantity {
             Quantity::Velocity => (0.5 * self.rest_speed, 0.5 * self.speed.most),
-            Quantity::Length => (4.0 * self.position_noise, self.stroke),
+            Quantity::Length => (self.position_noise, self.stroke),
             Quantity::Stiffness => (
                 0.05 * self.force.rms / (0.1 * self.stroke),
                 self.force.rms / self.position_noise.max(1e-6 * self.stroke),

@@ -36,7 +36,8 @@ pub(super) fn gains(
     let (mut position, mut velocity) = (vec![0.0; samples], vec![0.0; samples]);
     let mut innovation = vec![1.0; samples];
     for segment in segments {
-        let first = (time.get(segment.start + 1).copied().unwrap_or(0.0) - time[segment.start]).abs();
+        let first =
+            (time.get(segment.start + 1).copied().unwrap_or(0.0) - time[segment.start]).abs();
         let speed = if first > 0.0 { 10.0 * noise / first } else { 0.0 };
         let mut p = Covariance { xx: noise * noise, xv: 0.0, vv: speed * speed };
         for k in segment.start + 1..segment.end {

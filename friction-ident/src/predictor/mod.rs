@@ -113,7 +113,13 @@ impl Predictor {
         self.plant = (mass, damping);
         let each = |process: &f64| {
             let force = process.hypot(self.noise.force);
-            gains(&self.time, &self.segments, &self.counted, (mass, damping), (self.noise.position, force))
+            gains(
+                &self.time,
+                &self.segments,
+                &self.counted,
+                (mass, damping),
+                (self.noise.position, force),
+            )
         };
         self.gains = self.ladder.iter().map(each).collect();
     }
@@ -130,7 +136,8 @@ impl Predictor {
         thinned.segments.clear();
         let mut number = 0.0f64;
         for segment in &self.segments {
-            let interval = (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
+            let interval =
+                (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
             let length = ((PIECE / interval) as usize).clamp(50, most / 4);
             let mut start = segment.start;
             while start < segment.end {
@@ -230,7 +237,11 @@ impl Predictor {
                     if counts {
                         // A model that runs away errs as much as can be, whatever it says.
                         let (scaled, cut) = (error * gain[i].relative[n], LIMIT * gain[i].expected);
-                        errors[i].push(if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut });
+                        errors[i].push(if scaled.is_finite() {
+                            scaled.clamp(-cut, cut)
+                        } else {
+                            cut
+                        });
                     }
                     let finite = error.is_finite();
                     let fed = if finite { error.clamp(-self.fed_back, self.fed_back) } else { 0.0 };

@@ -75,7 +75,8 @@ fn fourth_differences(
     wanted: impl Fn(usize) -> bool,
 ) -> Vec<f64> {
     let (time, interval) = (recording.time(), recording.interval());
-    let even = |k: usize| (1..=4).all(|j| ((time[k + j] - time[k + j - 1]) / interval - 1.0).abs() < 0.05);
+    let even =
+        |k: usize| (1..=4).all(|j| ((time[k + j] - time[k + j - 1]) / interval - 1.0).abs() < 0.05);
     let mut out = Vec::new();
     for segment in recording.segments() {
         for k in segment.start..segment.end.saturating_sub(4) {

@@ -38,7 +38,15 @@ pub struct Thresholds {
 
 impl Default for Thresholds {
     fn default() -> Self {
-        Self { better: 100.0, share: 0.02, as_good: (6.0, 0.02), complete: 1.3, beam: 3, fitted: 5, most: 4 }
+        Self {
+            better: 100.0,
+            share: 0.02,
+            as_good: (6.0, 0.02),
+            complete: 1.3,
+            beam: 3,
+            fitted: 5,
+            most: 4,
+        }
     }
 }
 
@@ -235,15 +243,23 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
                 for child in children {
                     let gain = self.comparison.compare(from, &child);
-                    let outcome =
-                        if gain.nats > self.thresholds.better { Outcome::AsGood } else { Outcome::TooLittle };
+                    let outcome = if gain.nats > self.thresholds.better {
+                        Outcome::AsGood
+                    } else {
+                        Outcome::TooLittle
+                    };
                     self.note(size, &child, from, gain, outcome, "");
                     let effects = self.names(&child);
-                    self.observer.tell(&Event::Compared { rung: size, effects: &effects, nats: gain.nats });
+                    self.observer.tell(&Event::Compared {
+                        rung: size,
+                        effects: &effects,
+                        nats: gain.nats,
+                    });
                     if gain.nats <= self.thresholds.better {
                         continue;
                     }
-                    let same = |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
+                    let same =
+                        |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
                     match next.iter().position(same) {
                         Some(k) if self.comparison.compare(&next[k].0, &child).nats > 0.0 => {
                             next[k] = (child, gain);
@@ -289,7 +305,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.observer.tell(&Event::Screening { rung: size, candidates: open.len() });
         let screened = screen(self.family, self.ahead, from, &open, first);
         let least = if size == 1 { PROMISING.0 } else { PROMISING.1 };
-        let most = if size == 1 { self.thresholds.fitted } else { self.thresholds.fitted.min(self.thresholds.beam) };
+        let most = if size == 1 {
+            self.thresholds.fitted
+        } else {
+            self.thresholds.fitted.min(self.thresholds.beam)
+        };
         // Two forms of an effect at most, so that one effect does not take all places.
         let mut mains: Vec<usize> = Vec::new();
         let mut starts: Vec<&Promise> = Vec::new();
@@ -305,12 +325,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         }
         let fitted: Vec<(usize, Option<Node>)> = starts
             .par_iter()
-            .map(|promise| {
-                let fitted = || fit::fit(self.family, self.ahead, promise.start.clone(), from.setting, STEPS.0);
-                (promise.term, (!(self.stop)()).then(fitted))
-            })
+            .map(|promise| (promise.term, self.begun(promise, from.setting)))
             .collect();
-        self.untried.extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
+        self.untried
+            .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
         let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
         fitted.sort_by(|a, b| a.scale.total_cmp(&b.scale));
         let keep = if size == 1 { fitted.len() } else { self.thresholds.beam };
@@ -322,8 +340,20 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
         let beam = self.thresholds.beam;
         let shaped = settled.into_par_iter().enumerate();
-        let shaped = shaped.map(|(place, node)| if size == 1 || place < beam { self.shaped(node) } else { node });
+        let shaped = shaped
+            .map(|(place, node)| if size == 1 || place < beam { self.shaped(node) } else { node });
         (shaped.collect(), screened)
+    }
+
+    /// A candidate fitted from the best of its starts; nothing where time ran out.
+    fn begun(&self, promise: &Promise, setting: usize) -> Option<Node> {
+        if (self.stop)() {
+            return None;
+        }
+        let fit =
+            |start: &Fitted| fit::fit(self.family, self.ahead, start.clone(), setting, STEPS.0);
+        let fitted: Vec<Node> = promise.starts.par_iter().map(fit).collect();
+        fitted.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale))
     }
 
     /// The node, or the same with effects in their flexible forms where that is clearly better.
@@ -361,7 +391,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 .filter(|set| self.comparison.compare(set, top).nats <= near)
                 .min_by_key(|set| self.parameters(set))
                 .unwrap_or(top);
-            let polished = fit::fit(self.family, self.ahead, simplest.model.clone(), simplest.setting, STEPS.2);
+            let polished = fit::fit(
+                self.family,
+                self.ahead,
+                simplest.model.clone(),
+                simplest.setting,
+                STEPS.2,
+            );
             let polished = fit::settled(self.family, self.ahead, polished, STEPS.1);
             let set = if self.comparison.compare(simplest, &polished).nats > 0.0 {
                 polished
@@ -385,7 +421,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// Takes out what is not needed, and says what each of the rest is worth.
-    fn prune(&mut self, base: &Node, mut best: Node, nodes: &[Vec<Node>]) -> (Node, Vec<(usize, Difference, Node)>) {
+    fn prune(
+        &mut self,
+        base: &Node,
+        mut best: Node,
+        nodes: &[Vec<Node>],
+    ) -> (Node, Vec<(usize, Difference, Node)>) {
         loop {
             let mut costs: Vec<(usize, Difference, Node)> = Vec::new();
             for term in self.added(base, &best) {
@@ -402,7 +443,14 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             if let Some((_, cost, without)) = costs.pop() {
                 let size = costs.len();
                 let from = best.clone();
-                self.note(size, &without, &from, negative(cost), Outcome::Dropped, "as good without");
+                self.note(
+                    size,
+                    &without,
+                    &from,
+                    negative(cost),
+                    Outcome::Dropped,
+                    "as good without",
+                );
                 best = without;
             }
         }
@@ -431,15 +479,29 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         for term in best.effects(self.family) {
             let Some(main) = self.family.form_of(term) else { continue };
             let without = best.model.without(self.family, term);
-            let start = screen(self.family, self.ahead, &fit::evaluated(self.ahead, without, best.setting), &[main], false);
+            let start = screen(
+                self.family,
+                self.ahead,
+                &fit::evaluated(self.ahead, without, best.setting),
+                &[main],
+                false,
+            );
             let Some(start) = start.promises.into_iter().next() else { continue };
-            let plain = fit::fit(self.family, self.ahead, start.start, best.setting, STEPS.2);
+            let Some(plain) = self.begun(&start, best.setting) else { continue };
+            let plain = fit::fit(self.family, self.ahead, plain.model, best.setting, STEPS.2);
             let plain = fit::settled(self.family, self.ahead, plain, STEPS.1);
             let loss = self.comparison.compare(&plain, &best);
             let as_good = loss.nats < self.thresholds.better;
             let outcome = if as_good { Outcome::Added } else { Outcome::OtherShape };
             let from = best.clone();
-            self.note(best.effects(self.family).len(), &plain, &from, negative(loss), outcome, "the plain form");
+            self.note(
+                best.effects(self.family).len(),
+                &plain,
+                &from,
+                negative(loss),
+                outcome,
+                "the plain form",
+            );
             if as_good {
                 best = plain;
             }
@@ -533,17 +595,23 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             if rows.iter().any(|(term, ..)| self.main(*term) == main) {
                 continue;
             }
-            let has = |node: &&Node| node.effects(self.family).iter().any(|t| self.main(*t) == main);
+            let has =
+                |node: &&Node| node.effects(self.family).iter().any(|t| self.main(*t) == main);
             let fitted = children.iter().find(has);
             let row = fitted.map(|node| {
                 let term = node.effects(self.family).into_iter().find(|t| self.main(*t) == main);
                 let gain = self.comparison.compare(from, node).nats;
                 (term.unwrap_or(promise.term), node.model.clone(), gain)
             });
-            rows.push(row.unwrap_or((promise.term, promise.start, promise.gain)));
+            let start = promise.starts.into_iter().next().unwrap_or_default();
+            rows.push(row.unwrap_or((promise.term, start, promise.gain)));
         }
         rows.sort_by(|a, b| b.2.total_cmp(&a.2));
-        Ranked { rows, chance: screened.chance, points: from.errors.len() as f64 / from.correlation() }
+        Ranked {
+            rows,
+            chance: screened.chance,
+            points: from.errors.len() as f64 / from.correlation(),
+        }
     }
 
     /// Prediction error over what the sensors alone make.
@@ -587,7 +655,15 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         node.effects(self.family).iter().map(|t| self.family.terms()[*t].name.clone()).collect()
     }
 
-    fn note(&mut self, rung: usize, candidate: &Node, with: &Node, by: Difference, outcome: Outcome, reason: &str) {
+    fn note(
+        &mut self,
+        rung: usize,
+        candidate: &Node,
+        with: &Node,
+        by: Difference,
+        outcome: Outcome,
+        reason: &str,
+    ) {
         self.decisions.push(Decision {
             rung,
             candidate: self.names(candidate),

@@ -91,7 +91,8 @@ mod tests {
     #[test]
     fn a_column_that_is_in_the_errors_is_told_from_one_that_is_not() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
-        let mut noise = || -> Vec<f64> { (0..2000).map(|_| random.random_range(-1.0..1.0)).collect() };
+        let mut noise =
+            || -> Vec<f64> { (0..2000).map(|_| random.random_range(-1.0..1.0)).collect() };
         let (there, other, mut left) = (noise(), noise(), noise());
         let columns = |c: &Vec<f64>| Changed {
             columns: vec![c.clone()],

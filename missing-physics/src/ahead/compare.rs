@@ -80,7 +80,8 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         let jacobian = node.jacobian(self.family, self.ahead);
         let moved = scales::of(self.family, &node.model);
         let all: Vec<usize> = (0..moved.len()).collect();
-        let parts: Vec<Normal> = (0..FOLDS).map(|fold| self.part(node, jacobian, scale, fold)).collect();
+        let parts: Vec<Normal> =
+            (0..FOLDS).map(|fold| self.part(node, jacobian, scale, fold)).collect();
         let mut loss = vec![0.0; node.errors.len()];
         for held in 0..FOLDS {
             let mut matrix = vec![vec![0.0; moved.len()]; moved.len()];

@@ -40,6 +40,11 @@ pub trait Ahead: Sync {
     /// Ways to begin with a term beside a model.
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;
 
+    /// From how many of a term's trials it is fitted, the best ones first.
+    fn starts(&self, _term: usize) -> usize {
+        1
+    }
+
     /// Whether a term is tried by itself, not only as another form of one that is there.
     fn is_candidate(&self, _term: usize) -> bool {
         true

@@ -118,7 +118,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             detection_limits: self.limits(),
             decisions: self.found.decisions.iter().map(finite).collect(),
             // Sensors of which nothing is known make no budget.
-            budget: Some(budget).filter(|b| [b.expected, b.base, b.last].iter().all(|x| x.is_finite())),
+            budget: Some(budget)
+                .filter(|b| [b.expected, b.base, b.last].iter().all(|x| x.is_finite())),
             untried: self.names(&self.found.untried),
             seed: 0,
             wall_s: 0.0,
@@ -170,8 +171,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         // Rivals of one and the same effect stand together.
         for term in &added {
             let rivals = self.found.as_good.iter().filter_map(|set| {
-                let others: Vec<usize> =
-                    set.iter().copied().filter(|t| !self.found.is_in(added.as_slice(), *t, self.family)).collect();
+                let others: Vec<usize> = set
+                    .iter()
+                    .copied()
+                    .filter(|t| !self.found.is_in(added.as_slice(), *t, self.family))
+                    .collect();
                 let lacks = !self.found.is_in(set, *term, self.family);
                 (others.len() == 1 && lacks).then(|| others[0])
             });
@@ -208,7 +212,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         Rung {
             added,
             effects: effects.map(|&t| terms[t].name.clone()).collect(),
-            parameters: uncertainty::estimates(self.family, &self.as_prediction(node), &vec![1.0; node.errors.len()]),
+            parameters: uncertainty::estimates(
+                self.family,
+                &self.as_prediction(node),
+                &vec![1.0; node.errors.len()],
+            ),
             error: ladder::errors(self.family, fit, split),
             p_value: k.and_then(|k| self.found.p_values.get(k).copied()),
             metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), split)),
@@ -273,8 +281,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             } else {
                 format!("no {} within its limits", amplitude.name)
             };
-            let position = promise.start.terms.len() - 1;
-            let values = &promise.start.values[promise.start.range(self.family, position)];
+            let Some(start) = promise.starts.first() else { continue };
+            let values = &start.values[start.range(self.family, start.terms.len() - 1)];
             let shapes = term.parameters.iter().zip(values);
             let at: Vec<String> = shapes
                 .filter(|(parameter, _)| parameter.role == crate::family::Role::Shape)
@@ -312,7 +320,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                  library explains that.",
                 budget.last
             ),
-            Verdict::Stopped => "Stopped: the search was cut before anything could be said.".to_owned(),
+            Verdict::Stopped => {
+                "Stopped: the search was cut before anything could be said.".to_owned()
+            }
             Verdict::EffectsFound | Verdict::Ambiguous => format!(
                 "{}: {}. With it the prediction error falls from {:.2} to {:.2} times what the sensors make, \
                  that of the {name} from {first:.2} % to {last:.2} %.",

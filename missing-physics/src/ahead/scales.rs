@@ -27,7 +27,10 @@ pub struct Moved {
 /// The parameters of a model as they are moved.
 pub fn of<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<Moved> {
     let parameters = model.parameters(family);
-    parameters.zip(&model.values).map(|((term, p), value)| Moved::new(p, *value, term.always)).collect()
+    parameters
+        .zip(&model.values)
+        .map(|((term, p), value)| Moved::new(p, *value, term.always))
+        .collect()
 }
 
 impl Moved {

@@ -1,7 +1,7 @@
 //! Which candidates are worth a fit: the gain in likelihood to first order, the model's own parameters free.
 
-use super::node::Node;
 use super::chance::{self, Changed};
+use super::node::Node;
 use super::{Ahead, Trial, statistics};
 use crate::basis::{Basis, constrained, dot, gram, weighed};
 use crate::family::{Fitted, ModelFamily};
@@ -24,8 +24,8 @@ pub struct Promise {
     pub term: usize,
     /// Gain, nats.
     pub gain: f64,
-    /// Where to begin.
-    pub start: Fitted,
+    /// Where to begin, the most promising first.
+    pub starts: Vec<Fitted>,
     /// Gain per square of the first amplitude, nats: what a size would have shown. Nothing without amplitudes.
     pub leverage: Option<f64>,
 }
@@ -91,7 +91,10 @@ impl Screening<'_> {
             return trials;
         };
         let own = single(self.own.columns());
-        let (left, weight) = (single(&[self.left.clone()]).swap_remove(0), single(&[self.weight.clone()]).swap_remove(0));
+        let (left, weight) = (
+            single(&[self.left.clone()]).swap_remove(0),
+            single(&[self.weight.clone()]).swap_remove(0),
+        );
         let mut ranked: Vec<(f64, Trial)> = columns
             .par_iter()
             .zip(trials)
@@ -112,6 +115,7 @@ impl Screening<'_> {
             trials.iter().flat_map(probes).map(|model| (model, self.node.setting)).collect();
         let mut errors = self.ahead.errors(&probes).into_iter();
         let mut best: Option<Promise> = None;
+        let mut starts: Vec<(f64, Fitted)> = Vec::new();
         for trial in trials {
             let count = trial.amplitudes.len().max(1);
             let columns: Vec<Vec<f64>> =
@@ -120,20 +124,27 @@ impl Screening<'_> {
             if best.as_ref().is_none_or(|best| gain > best.gain) {
                 let size = trial.amplitudes.first().map(|(_, size)| size);
                 let leverage = size.map(|size| 0.5 * dot(&columns[0], &columns[0]) / (size * size));
-                best = Some(Promise { term, gain, start: started(trial, &by), leverage });
+                best = Some(Promise { term, gain, starts: Vec::new(), leverage });
             }
+            starts.push((gain, started(trial, &by)));
             if let Some(changed) = &mut changed {
                 let positive = count == 1 && positive(family, trial)[0];
                 changed.push(Changed { matrix: gram(&columns), columns, positive });
             }
         }
-        best
+        starts.sort_by(|a, b| b.0.total_cmp(&a.0));
+        starts.truncate(self.ahead.starts(term));
+        best.map(|best| Promise {
+            starts: starts.into_iter().map(|(_, start)| start).collect(),
+            ..best
+        })
     }
 
     /// What a trial changes, weighed and freed of what the model's own parameters do.
     fn change(&self, errors: &[f64]) -> Vec<f64> {
         let cut = CUT * self.scale;
-        let change = errors.iter().zip(&self.node.errors).map(|(e, old)| (e - old).clamp(-cut, cut));
+        let change =
+            errors.iter().zip(&self.node.errors).map(|(e, old)| (e - old).clamp(-cut, cut));
         let mut column: Vec<f64> = change.zip(&self.weight).map(|(c, w)| c * w).collect();
         self.own.project_out(&mut column);
         column
@@ -167,9 +178,9 @@ fn single(columns: &[Vec<f64>]) -> Vec<Vec<f32>> {
 /// Gain of two columns of free sign beside the orthonormal `own` ones, which `left` is free of: what lies in their
 /// space is taken out of the scalar products, not out of the columns.
 fn first_order(pair: &[Vec<f32>; 2], weight: &[f32], own: &[Vec<f32>], left: &[f32]) -> f64 {
-    let [a, b] = pair.each_ref().map(|column| {
-        column.iter().zip(weight).map(|(c, w)| c * w).collect::<Vec<f32>>()
-    });
+    let [a, b] = pair
+        .each_ref()
+        .map(|column| column.iter().zip(weight).map(|(c, w)| c * w).collect::<Vec<f32>>());
     let inside = |column: &[f32]| -> Vec<f64> { own.iter().map(|q| product(q, column)).collect() };
     let (qa, qb) = (inside(&a), inside(&b));
     let free = |x: &[f32], y: &[f32], qx: &[f64], qy: &[f64]| product(x, y) - dot(qx, qy);
