@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn multiples_and_gains_have_the_digits_that_matter() {
-        assert_eq!([1.046, 3.14, 123.4, f64::NAN].map(times), ["1.05", "3.1", "123", "-"]);
+        assert_eq!([1.046, 3.12, 123.4, f64::NAN].map(times), ["1.05", "3.1", "123", "-"]);
         assert_eq!([340.4, -2.44, 0.01, f64::INFINITY].map(nats), ["+340", "-2.4", "0.0", "-"]);
     }
 
@@ -371,7 +371,7 @@ mod tests {
         let json = serde_json::json!({
             "verdict": verdict, "added": ["stribeck"], "ladder": [], "ranking": [], "where": [], "ambiguous": [],
             "noise_floor": {}, "seed": 1, "wall_s": 1.0,
-            "budget": {"expected": 1e-7, "base": 9.0, "last": 3.14, "complete": complete},
+            "budget": {"expected": 1e-7, "base": 9.0, "last": 3.12, "complete": complete},
         });
         serde_json::from_value(json).unwrap()
     }

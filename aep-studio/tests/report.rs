@@ -99,7 +99,7 @@ fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
 fn ahead() -> Discovery {
     let mut discovery = discovery();
     for (k, rung) in discovery.ladder.iter_mut().enumerate() {
-        rung.budget = Some([12.5, 3.14][k.min(1)]);
+        rung.budget = Some([12.5, 3.12][k.min(1)]);
         rung.likelihood_gain = (k > 0).then_some(812.0);
     }
     for candidate in discovery.ranking.iter_mut().flatten() {
@@ -117,7 +117,7 @@ fn ahead() -> Discovery {
     let decisions =
         json!([decision("cogging", "too_little", below), decision("drift", "worse", 1)]);
     discovery.decisions = serde_json::from_value(decisions).unwrap();
-    let budget = json!({"expected": 1e-7, "base": 12.5, "last": 3.14, "complete": false});
+    let budget = json!({"expected": 1e-7, "base": 12.5, "last": 3.12, "complete": false});
     discovery.budget = Some(serde_json::from_value(budget).unwrap());
     discovery
 }

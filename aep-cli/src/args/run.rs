@@ -225,7 +225,7 @@ mod tests {
         let settings = settings("");
         assert_eq!(settings.thresholds, Thresholds::default());
         assert_eq!(settings.most, Thresholds::default().most);
-        assert_eq!(settings.time_limit, Some(Duration::from_secs(60)));
+        assert_eq!(settings.time_limit, Some(Duration::from_mins(1)));
     }
 
     #[test]

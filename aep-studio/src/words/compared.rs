@@ -180,7 +180,7 @@ fn best_refused<'a>(
     // Where sets gained enough at first, the last word was on the best of them.
     let gained = |d: &&Decision| d.outcome == Outcome::Worse && d.difference > thresholds.better;
     let last_word = refused.iter().rev().find(|d| d.outcome == Outcome::TooLittle);
-    if let Some(last) = last_word.filter(|_| refused.iter().any(|d| gained(&d))) {
+    if let Some(last) = last_word.filter(|_| refused.iter().any(gained)) {
         return Some(last);
     }
     refused.into_iter().max_by(|a, b| a.difference.total_cmp(&b.difference))

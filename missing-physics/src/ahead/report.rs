@@ -218,7 +218,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                 &vec![1.0; node.errors.len()],
             ),
             error: ladder::errors(self.family, fit, split),
-            p_value: k.and_then(|k| self.found.p_values.get(k).copied()),
+            p_value: k.and_then(|k| self.found.p_values.get(k).copied()).map(|p| {
+                // A gain that is no number is none.
+                if gain.is_some_and(|gain| gain.nats.is_nan()) { 1.0 } else { p }
+            }),
             metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), split)),
             likelihood_gain: gain.map(|gain| gain.nats).filter(|nats| nats.is_finite()),
             budget: Some(node.scale / self.ahead.budget()).filter(|times| times.is_finite()),
@@ -355,9 +358,6 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         }
         if self.found.stopped {
             let untried = self.names(&self.found.untried);
-            if verdict != Verdict::Stopped {
-                text.push_str(" Stopped before the end of the search.");
-            }
             if !untried.is_empty() {
                 let _ = write!(text, " Not tried: {}.", untried.join(", "));
             }
