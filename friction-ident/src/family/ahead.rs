@@ -174,6 +174,10 @@ impl Ahead for View<'_> {
         self.family.in_flexible_form(model, term)
     }
 
+    fn variations(&self, model: &Fitted) -> Vec<Fitted> {
+        self.family.other_second_bodies(model)
+    }
+
     fn starts(&self, term: usize) -> usize {
         if self.family.is_second_body(term) { SECOND_BODIES } else { 1 }
     }

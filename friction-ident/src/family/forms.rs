@@ -6,7 +6,7 @@ use missing_physics::ahead::Trial;
 use super::FrictionFamily;
 
 /// Each form and the more flexible one that takes its place before another effect is named.
-const FLEXIBLE: [(&str, &str); 15] = [
+const FLEXIBLE: [(&str, &str); 13] = [
     ("stribeck", "stribeck:free"),
     ("stribeck:gaussian", "stribeck:free"),
     ("stribeck:exponential", "stribeck:free"),
@@ -20,8 +20,6 @@ const FLEXIBLE: [(&str, &str); 15] = [
     ("load-friction", "load-friction:both"),
     ("load-friction:inertia", "load-friction:both"),
     ("actuator-lag", "actuator-lag:second-order"),
-    ("flexible-coupling", "flexible-coupling:friction"),
-    ("backlash", "backlash:two-mass"),
 ];
 /// Forms that only take the place of another one: alone they would fit anything a little.
 const ONLY_FLEXIBLE: [&str; 6] = [
@@ -99,20 +97,6 @@ impl FrictionFamily {
                 set("c", known("c").unwrap_or(0.0));
             }
             "actuator-lag:second-order" => set("zeta", 1.0),
-            "flexible-coupling:friction" => {
-                let share = SHARES[0];
-                let level = self.value(&base, "coulomb", "F_C").unwrap_or(0.0);
-                let damping = self.value(&base, "viscous", "F_v").unwrap_or(0.0);
-                set("F_L", share * level);
-                set("d_L", share * damping);
-                self.change(&mut base, "coulomb", "F_C", |level| level * (1.0 - share));
-                self.change(&mut base, "viscous", "F_v", |damping| damping * (1.0 - share));
-            }
-            "backlash:two-mass" => {
-                let gap = known("b").unwrap_or(1e-5);
-                let all = self.second_bodies(&base, to, &[vec![("b", gap), ("zeta", DAMPING.0)]]);
-                return all.into_iter().next().map(|trial| trial.model);
-            }
             _ => {}
         }
         Some(base.with(to, &values))
@@ -179,6 +163,39 @@ impl FrictionFamily {
             }
         }
         trials
+    }
+
+    /// The model with its second body, if that is the last term, at other gaps or frequencies and with other shares
+    /// of the friction.
+    pub(super) fn other_second_bodies(&self, model: &Fitted) -> Vec<Fitted> {
+        let Some(&term) = model.terms.last().filter(|term| self.is_second_body(**term)) else {
+            return Vec::new();
+        };
+        let name = self.terms[term].name.clone();
+        let (length, factors) = if self.place(model, &name, "b").is_some() {
+            ("b", [0.75, 0.9, 1.0, 1.12, 1.35])
+        } else {
+            ("f", [0.75, 0.88, 1.0, 1.14, 1.33])
+        };
+        let friction = [("F_L", "coulomb", "F_C"), ("d_L", "viscous", "F_v")];
+        let mut all = Vec::new();
+        for factor in factors {
+            for share in std::iter::once(None).chain(BEHIND_GAP.map(Some)) {
+                if factor == 1.0 && share.is_none() {
+                    continue;
+                }
+                let mut other = model.clone();
+                self.change(&mut other, &name, length, |value| value * factor);
+                for (load, base, level) in friction.iter().filter(|_| share.is_some()) {
+                    let of = |term: &str, name: &str| self.value(model, term, name).unwrap_or(0.0);
+                    let (total, share) = (of(&name, load) + of(base, level), share.unwrap_or(0.0));
+                    self.change(&mut other, &name, load, |_| total * share);
+                    self.change(&mut other, base, level, |_| total * (1.0 - share));
+                }
+                all.push(other);
+            }
+        }
+        all
     }
 
     /// Index of a parameter of a term in a model's values.

@@ -11,6 +11,8 @@ use super::{FrictionFamily, Options, PreparationError};
 
 /// Effects of the model by which it is decided.
 const SIMPLE: [&str; 3] = ["coulomb", "viscous", "offset"];
+/// Degrees of freedom of the errors.
+const FREEDOM: f64 = 2.0;
 
 /// What was decided about the force between samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,12 +28,16 @@ pub(super) fn decided(
     recording: &Recording,
     options: &Options,
 ) -> Result<FrictionFamily, PreparationError> {
-    let with =
-        |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
+    let with = |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
     let (sampled, held) = (with(Hold::Sampled)?, with(Hold::ZeroOrder)?);
     let (Some(a), Some(b)) = (simple(&sampled), simple(&held)) else { return Ok(sampled) };
-    let scale = a.scale.min(b.scale);
-    let loss = |node: &Node| statistics::total(&node.errors, scale) / node.correlation();
+    // An effect that the simple model lacks makes large errors at some moments, whatever the hold: errors of
+    // Student's distribution let the many calm moments decide.
+    let scale = statistics::spread(&a.errors).min(statistics::spread(&b.errors));
+    let loss = |node: &Node| -> f64 {
+        let each = node.errors.iter().map(|e| (e / scale).powi(2) / FREEDOM);
+        0.5 * (FREEDOM + 1.0) * each.map(f64::ln_1p).sum::<f64>() / node.correlation()
+    };
     let nats = loss(&a) - loss(&b);
     let (hold, mut family) =
         if nats > 0.0 { (Hold::ZeroOrder, held) } else { (Hold::Sampled, sampled) };

@@ -29,7 +29,7 @@ use gain::{Gain, gains};
 
 /// Longest step of the simulation, s, and that with a second body.
 const STEP: f64 = 1.25e-3;
-const STEP_OF_TWO: f64 = 5e-4;
+const STEP_OF_TWO: f64 = 8e-4;
 /// Process noise of the ladder: the smallest as a share of the rms force, the factor from rung to rung, and the
 /// number of rungs.
 const LEAST: f64 = 1e-3;

@@ -15,7 +15,7 @@ use super::node::Node;
 use super::screen::{Promise, Screened, screen};
 use super::{Ahead, chance, fit, scales};
 use crate::discover::{Event, Observer};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::{Fitted, ModelFamily, Role};
 
 /// Numbers that steer a search. Each stands in docs/decisions.md with what half and one and a half times of it do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +28,9 @@ pub struct Thresholds {
     pub as_good: (f64, f64),
     /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
     pub complete: f64,
+    /// Effects are only named where they remove at least this share of what exceeds the sensors, or leave a complete
+    /// model: else the nearest effects are not the cause.
+    pub explained: f64,
     /// Sets that are followed side by side.
     pub beam: usize,
     /// Candidates that are fitted beside each set.
@@ -39,10 +42,11 @@ pub struct Thresholds {
 impl Default for Thresholds {
     fn default() -> Self {
         Self {
-            better: 100.0,
+            better: 40.0,
             share: 0.02,
             as_good: (6.0, 0.02),
             complete: 1.3,
+            explained: 0.5,
             beam: 3,
             fitted: 5,
             most: 4,
@@ -52,10 +56,15 @@ impl Default for Thresholds {
 
 /// Steps of a first fit, of a refit elsewhere, and of the last one.
 const STEPS: (usize, usize, usize) = (6, 6, 12);
+/// Most valleys that are left for a lower one, and by how much lower it must be.
+const RESCANS: usize = 3;
+const LOWER: f64 = 0.99;
+/// Only models whose errors are within this factor of the best of their size are looked at so closely.
+const NEAR: f64 = 1.25;
 /// Steps of a refit on all of a recording that was searched in part.
 const IN_FULL: usize = 4;
-/// Promise below which a candidate is not fitted: beside the base, and beside other effects; nats.
-const PROMISING: (f64, f64) = (2.0, 50.0);
+/// Promise below which a candidate is not fitted beside the base, nats.
+const PROMISING: f64 = 2.0;
 /// A model is well inside the budget below this multiple of it.
 const INSIDE: f64 = 1.12;
 /// A form must be better than another one by this much to take its place, nats.
@@ -137,6 +146,36 @@ impl Found {
         self.complete = top.scale / ahead.budget() <= thresholds.complete;
     }
 
+    /// Takes all names back where much is left and what was found explains little of it: the nearest effects are not
+    /// the cause then.
+    pub fn judge<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
+        let excess = |node: &Node| ((node.scale / ahead.budget()).powi(2) - 1.0).max(0.0);
+        if excess(top) <= (1.0 - thresholds.explained) * excess(&self.base) {
+            return;
+        }
+        let names: Vec<&str> =
+            self.added.iter().map(|term| family.terms()[*term].name.as_str()).collect();
+        self.notes.push(format!(
+            "nearest: {} would lower the prediction error only from {:.2} to {:.2} times what the sensors make: \
+             that is not the cause",
+            names.join(" + "),
+            self.base.scale / ahead.budget(),
+            top.scale / ahead.budget(),
+        ));
+        self.rungs.clear();
+        self.added.clear();
+        self.gains.clear();
+        self.costs.clear();
+        self.as_good.clear();
+        self.p_values.clear();
+    }
+
     /// Whether a term, in whatever form, is among `terms`.
     pub fn is_in<F: ModelFamily + ?Sized>(&self, terms: &[usize], term: usize, family: &F) -> bool {
         let main = |t: usize| family.form_of(t).unwrap_or(t);
@@ -175,6 +214,7 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     /// Terms that may be added.
     candidates: Vec<usize>,
     decisions: Vec<Decision>,
+    notes: Vec<String>,
     stop: &'a (dyn Fn() -> bool + Sync),
     observer: Watch<'a>,
     untried: BTreeSet<usize>,
@@ -197,6 +237,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             thresholds,
             candidates,
             decisions: Vec::new(),
+            notes: Vec::new(),
             stop,
             observer: Watch(Mutex::new(observer)),
             untried: BTreeSet::new(),
@@ -237,12 +278,21 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         for size in 1..=self.thresholds.most.max(1) {
             let mut next: Vec<(Node, Difference)> = Vec::new();
             for (place, from) in beam.iter().enumerate() {
-                let (children, screened) = self.expand(from, size, place == 0);
+                let (children, screened) = self.expand(base, from, size, place == 0);
                 if place == 0 {
                     ranking.push(self.ranked(from, &children, screened));
                 }
                 for child in children {
                     let gain = self.comparison.compare(from, &child);
+                    if let Some(parameter) = self.at_limit(base, &child) {
+                        let reason = format!("{parameter} ended at the limit of its search");
+                        self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
+                        if gain.nats > self.thresholds.better && size == 1 {
+                            let effects = self.names(&child).join(" + ");
+                            self.notes.push(format!("{effects} is not named: {reason}"));
+                        }
+                        continue;
+                    }
                     let outcome = if gain.nats > self.thresholds.better {
                         Outcome::AsGood
                     } else {
@@ -291,7 +341,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
-    fn expand(&mut self, from: &Node, size: usize, first: bool) -> (Vec<Node>, Screened) {
+    fn expand(&mut self, base: &Node, from: &Node, size: usize, first: bool) -> (Vec<Node>, Screened) {
         let open: Vec<usize> = self
             .candidates
             .iter()
@@ -304,7 +354,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         }
         self.observer.tell(&Event::Screening { rung: size, candidates: open.len() });
         let screened = screen(self.family, self.ahead, from, &open, first);
-        let least = if size == 1 { PROMISING.0 } else { PROMISING.1 };
+        // The first order seldom promises less than half of what a fit gains.
+        let least = if size == 1 {
+            PROMISING
+        } else {
+            0.5 * self.thresholds.better.max(self.thresholds.share * self.comparison.compare(base, from).nats)
+        };
         let most = if size == 1 {
             self.thresholds.fitted
         } else {
@@ -337,6 +392,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .into_par_iter()
             .map(|node| fit::settled(self.family, self.ahead, node, STEPS.1))
             .collect();
+        let best = settled.iter().map(|node| node.scale).fold(f64::INFINITY, f64::min);
+        settled = settled
+            .into_par_iter()
+            .map(|node| if node.scale <= NEAR * best { self.rescanned(node) } else { node })
+            .collect();
         settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
         let beam = self.thresholds.beam;
         let shaped = settled.into_par_iter().enumerate();
@@ -354,6 +414,28 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             |start: &Fitted| fit::fit(self.family, self.ahead, start.clone(), setting, STEPS.0);
         let fitted: Vec<Node> = promise.starts.par_iter().map(fit).collect();
         fitted.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale))
+    }
+
+    /// The node, or one in a lower valley beside it.
+    fn rescanned(&self, mut node: Node) -> Node {
+        for _ in 0..RESCANS {
+            let beside = self.ahead.variations(&node.model);
+            if beside.is_empty() || (self.stop)() {
+                break;
+            }
+            let trials: Vec<(Fitted, usize)> =
+                beside.into_iter().map(|model| (model, node.setting)).collect();
+            let errors = self.ahead.errors(&trials);
+            let nodes = trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(m, s, e));
+            let Some(best) = nodes.min_by(|a, b| a.scale.total_cmp(&b.scale)) else { break };
+            let fitted = fit::fit(self.family, self.ahead, best.model, node.setting, STEPS.1);
+            let fitted = fit::settled(self.family, self.ahead, fitted, STEPS.1);
+            if fitted.scale > LOWER * node.scale {
+                break;
+            }
+            node = fitted;
+        }
+        node
     }
 
     /// The node, or the same with effects in their flexible forms where that is clearly better.
@@ -580,7 +662,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             last_screening,
             complete,
             places: Vec::new(),
-            notes: Vec::new(),
+            notes: std::mem::take(&mut self.notes),
             decisions,
             untried: self.untried.into_iter().collect(),
             stopped,
@@ -676,11 +758,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         });
     }
 
-    /// Whether a parameter of an effect ended at a limit of its search.
-    pub fn at_limit(&self, node: &Node, term: usize) -> bool {
-        let Some(position) = node.model.terms.iter().position(|t| *t == term) else { return false };
-        let range = node.model.range(self.family, position);
-        scales::of(self.family, &node.model)[range].iter().any(scales::Moved::is_at_limit)
+    /// An amplitude of an added effect that ended at the limit of its search, if any: what it would be is not known.
+    fn at_limit(&self, base: &Node, node: &Node) -> Option<String> {
+        let moved = scales::of(self.family, &node.model);
+        let parameters = node.model.parameters(self.family).zip(&moved);
+        let own = parameters.skip(base.model.values.len());
+        let mut limited = own.filter(|((_, p), moved)| p.role == Role::Amplitude && moved.is_at_far_limit());
+        limited.next().map(|((term, parameter), _)| term.key(parameter))
     }
 }
 

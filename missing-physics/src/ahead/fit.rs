@@ -8,7 +8,7 @@ use crate::basis::{dot, solve};
 use crate::family::{Fitted, ModelFamily};
 
 /// Dampings that are tried at once, as multiples of the one that led down last.
-const DAMPINGS: [f64; 6] = [0.03, 0.3, 3.0, 30.0, 1e3, 1e5];
+const DAMPINGS: [f64; 5] = [0.03, 0.6, 12.0, 300.0, 3e4];
 /// Least damping.
 const LEAST: f64 = 1e-7;
 /// A fall of the loss below this share of it, or below one nat, ends a fit.

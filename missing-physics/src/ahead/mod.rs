@@ -40,6 +40,12 @@ pub trait Ahead: Sync {
     /// Ways to begin with a term beside a model.
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;
 
+    /// Models beside this one in which the term that was added last may lie in a lower valley; few, and none where
+    /// its valley is wide.
+    fn variations(&self, _model: &Fitted) -> Vec<Fitted> {
+        Vec::new()
+    }
+
     /// From how many of a term's trials it is fitted, the best ones first.
     fn starts(&self, _term: usize) -> usize {
         1

@@ -58,6 +58,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     if part.is_some() {
         found.confirm(family, ahead, &thresholds);
     }
+    found.judge(family, ahead, &thresholds);
     observer.event(&Event::Finishing);
     let mut discovery = Report { family, ahead, settings, found }.discovery();
     discovery.seed = settings.seed;

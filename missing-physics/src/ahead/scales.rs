@@ -78,12 +78,9 @@ impl Moved {
             || (self.value >= self.parameter.upper && push > 0.0)
     }
 
-    /// Whether it ended at a limit of its search; an amplitude of 0 is one.
-    pub fn is_at_limit(&self) -> bool {
-        let near = |limit: f64| {
-            let size = if limit == 0.0 { SHARE * self.parameter.start.abs() } else { limit.abs() };
-            (self.value - limit).abs() <= AT_LIMIT * size
-        };
+    /// Whether it ended at a limit of its search that is not 0.
+    pub fn is_at_far_limit(&self) -> bool {
+        let near = |limit: f64| limit != 0.0 && (self.value - limit).abs() <= AT_LIMIT * limit.abs();
         near(self.parameter.lower) || near(self.parameter.upper)
     }
 }
