@@ -266,7 +266,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let best = self.size(&base, &nodes);
         let (last, costs) = self.prune(&base, best, &nodes);
         let last = self.plainest(last);
-        self.conclude(base, last, costs, &nodes, ranking)
+        self.conclude(base, &last, costs, &nodes, ranking)
     }
 
     /// Sets of effects by their number, the best first.
@@ -401,7 +401,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let beam = self.thresholds.beam;
         let shaped = settled.into_par_iter().enumerate();
         let shaped = shaped
-            .map(|(place, node)| if size == 1 || place < beam { self.shaped(node) } else { node });
+            .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
         (shaped.collect(), screened)
     }
 
@@ -439,7 +439,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// The node, or the same with effects in their flexible forms where that is clearly better.
-    fn shaped(&self, node: Node) -> Node {
+    fn shaped(&self, node: &Node) -> Node {
         let mut best = node.clone();
         let mut start = node.model.clone();
         let mut changed = false;
@@ -511,7 +511,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     ) -> (Node, Vec<(usize, Difference, Node)>) {
         loop {
             let mut costs: Vec<(usize, Difference, Node)> = Vec::new();
-            for term in self.added(base, &best) {
+            for term in Self::added(base, &best) {
                 let without = self.without(base, &best, term, nodes);
                 let cost = self.comparison.compare(&without, &best);
                 costs.push((term, cost, without));
@@ -541,7 +541,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// The model without a term, refitted.
     fn without(&self, base: &Node, node: &Node, term: usize, nodes: &[Vec<Node>]) -> Node {
         let model = node.model.without(self.family, term);
-        if self.added(base, node).len() == 1 {
+        if Self::added(base, node).len() == 1 {
             return base.clone();
         }
         let fitted = fit::fit(self.family, self.ahead, model, node.setting, STEPS.1);
@@ -594,7 +594,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn conclude(
         mut self,
         base: Node,
-        last: Node,
+        last: &Node,
         costs: Vec<(usize, Difference, Node)>,
         nodes: &[Vec<Node>],
         ranking: Vec<Ranked>,
@@ -624,8 +624,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .get(added.len())
             .into_iter()
             .flatten()
-            .filter(|set| self.key(set) != self.key(&last))
-            .filter(|set| self.comparison.compare(set, &last).nats < self.thresholds.better)
+            .filter(|set| self.key(set) != self.key(last))
+            .filter(|set| self.comparison.compare(set, last).nats < self.thresholds.better)
             .map(|set| set.effects(self.family))
             .collect();
         let stopped = (self.stop)();
@@ -643,7 +643,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let p_values = gains.iter().enumerate().map(|(k, gain)| of(gain, k)).collect();
         let complete = self.budget(&top) <= self.thresholds.complete;
         let mut decisions = std::mem::take(&mut self.decisions);
-        let names = self.names(&last);
+        let names = self.names(last);
         for decision in &mut decisions {
             if decision.outcome == Outcome::AsGood {
                 let stands = decision.candidate == names;
@@ -702,7 +702,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// Terms of a node that the base does not have, in the order of the model.
-    fn added(&self, base: &Node, node: &Node) -> Vec<usize> {
+    fn added(base: &Node, node: &Node) -> Vec<usize> {
         node.model.terms.iter().copied().filter(|t| !base.model.terms.contains(t)).collect()
     }
 
@@ -771,3 +771,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 fn negative(difference: Difference) -> Difference {
     Difference { nats: -difference.nats, ..difference }
 }
+
+#[cfg(test)]
+mod tests;

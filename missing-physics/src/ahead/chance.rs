@@ -49,7 +49,9 @@ pub fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
         }
         let mut out = inverse.make_output_vec();
         let _ = inverse.process(&mut product, &mut out);
-        out.iter_mut().for_each(|value| *value /= points as f64);
+        for value in &mut out {
+            *value /= points as f64;
+        }
         out
     };
     let of_left = transform(left);
@@ -105,5 +107,28 @@ mod tests {
         let gain = |c: &[f64]| 0.5 * dot(c, &left).powi(2) / dot(c, c) - 1.0;
         assert!(p_value(gain(&there), &chance) <= 2e-3);
         assert!(p_value(gain(&other), &chance) > 0.01);
+    }
+
+    #[test]
+    fn a_p_value_is_never_below_the_resolution_of_the_shifts() {
+        let chance: Vec<f64> = (0..999).map(f64::from).collect();
+        assert_eq!(p_value(f64::INFINITY, &chance), 1e-3);
+        assert_eq!(p_value(998.0, &chance), 2e-3);
+        assert_eq!(p_value(0.0, &chance), 1.0);
+        // Where nothing could be shifted nothing is known.
+        assert_eq!(p_value(1e9, &[]), 1.0);
+    }
+
+    #[test]
+    fn shifts_that_map_a_column_onto_itself_are_left_out() {
+        let periodic: Vec<f64> = (0..2000).map(|k| (f64::from(k) * 0.01).sin()).collect();
+        let trial = Changed {
+            matrix: vec![vec![dot(&periodic, &periodic)]],
+            columns: vec![periodic.clone()],
+            positive: false,
+        };
+        let left = vec![0.1; 2000];
+        let finite = largest(&left, &[trial]);
+        assert!(finite.len() < SHIFTS / 2, "{}", finite.len());
     }
 }

@@ -113,3 +113,56 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         Normal::of(&columns, &pick(&node.errors), scale)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::fit::fit;
+    use crate::ahead::testing::{BEAT, NOISE, Plant, WAVE};
+
+    const WEAK: f64 = 0.01;
+
+    fn fitted(plant: &Plant, terms: &[usize]) -> Node {
+        let more: Vec<(usize, &[f64])> = terms.iter().map(|term| (*term, &[0.0][..])).collect();
+        fit(plant, plant, Plant::model(&more), 0, 8)
+    }
+
+    #[test]
+    fn a_comparison_the_other_way_round_says_the_opposite() {
+        let plant = Plant::new(1, &[(WAVE, &[WEAK])]);
+        let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
+        let comparison = Comparison::new(&plant, &plant);
+        let (there, back) = (comparison.compare(&a, &b), comparison.compare(&b, &a));
+        // Both in nats of independent errors of the model that is judged.
+        let (there, back) = (there.nats * b.correlation(), back.nats * a.correlation());
+        assert!(there > 0.0 && (there + back).abs() < 1e-9 * there, "{there} {back}");
+        assert_eq!(comparison.compare(&b, &b), Difference { nats: 0.0, error: 0.0 });
+    }
+
+    #[test]
+    fn the_true_structure_gains_the_likelihood_that_its_errors_say() {
+        let plant = Plant::new(2, &[(WAVE, &[WEAK])]);
+        let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
+        let gain = Comparison::new(&plant, &plant).compare(&a, &b);
+        let square = |node: &Node| node.errors.iter().map(|e| e * e).sum::<f64>();
+        let expected = (square(&a) - square(&b)) / (2.0 * NOISE * NOISE * b.correlation());
+        assert!((gain.nats / expected - 1.0).abs() < 0.1, "{} {expected}", gain.nats);
+        assert!(gain.nats > 5.0 * gain.error, "{gain:?}");
+        assert!((b.model.values[1] / WEAK - 1.0).abs() < 0.1, "{:?}", b.model);
+    }
+
+    #[test]
+    fn what_is_not_there_gains_nothing_on_held_out_data() {
+        // Twice the gain has one degree of freedom: above 3 nats, less what held-out data cost, at less than 1 %.
+        let above = (0..100)
+            .filter(|&seed| {
+                let plant = Plant::new(1000 + seed, &[(WAVE, &[WEAK])]);
+                let (a, b) = (fitted(&plant, &[WAVE]), fitted(&plant, &[WAVE, BEAT]));
+                let nats = Comparison::new(&plant, &plant).compare(&a, &b).nats;
+                assert!(nats < 15.0, "seed {seed}: {nats}");
+                nats > 3.0
+            })
+            .count();
+        assert!(above <= 5, "{above} of 100");
+    }
+}

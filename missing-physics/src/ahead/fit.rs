@@ -134,3 +134,66 @@ pub fn settled<F: ModelFamily + ?Sized>(
     }
     node
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::testing::{NOISE, Plant, SAMPLES, TONE, TONES, WAVE};
+
+    #[test]
+    fn a_fit_of_a_linear_model_ends_at_its_least_squares() {
+        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        let far = Fitted { terms: vec![0, WAVE], values: vec![0.4, -2.0] };
+        let node = fit(&plant, &plant, far, 0, 10);
+        // One exact step from anywhere, as the errors are linear.
+        let unit = |k: usize| {
+            let mut model = node.model.clone();
+            model.values[k] += 1.0;
+            let moved = plant.errors(&[(model, 0)]).swap_remove(0);
+            moved.iter().zip(&node.errors).map(|(e, old)| e - old).collect::<Vec<f64>>()
+        };
+        let columns = [unit(0), unit(1)];
+        let matrix = crate::basis::gram(&columns);
+        let moment: Vec<f64> = columns.iter().map(|c| -dot(c, &node.errors)).collect();
+        for (k, step) in solve(&matrix, &moment, &[0, 1]).iter().enumerate() {
+            let deviation = NOISE / matrix[k][k].sqrt();
+            assert!(step.abs() < 0.1 * deviation, "{k}: {step:e} {deviation:e}");
+        }
+        assert!((node.scale / NOISE - 1.0).abs() < 0.06, "{}", node.scale);
+    }
+
+    #[test]
+    fn a_few_wild_samples_hardly_move_a_fit() {
+        let mut plant = Plant::new(2, &[(WAVE, &[0.05])]);
+        let size = |plant: &Plant| {
+            let node = fit(plant, plant, Plant::model(&[(WAVE, &[0.0])]), 0, 10);
+            node.model.values[1]
+        };
+        let clean = size(&plant);
+        (0..SAMPLES).step_by(200).for_each(|k| plant.disturb(k, 100.0 * NOISE));
+        // Least squares would be off by several times that.
+        assert!((size(&plant) / clean - 1.0).abs() < 0.03, "{clean} {}", size(&plant));
+    }
+
+    #[test]
+    fn a_model_that_lacks_nothing_is_judged_without_process_noise_and_another_with_some() {
+        let plant = Plant::new(3, &[(WAVE, &[0.1])]);
+        assert_eq!(best_setting(&plant, &Plant::model(&[(WAVE, &[0.1])])), 0);
+        let lacking = evaluated(&plant, Plant::model(&[]), 0);
+        let settled = settled(&plant, &plant, lacking.clone(), 6);
+        assert!(settled.setting > 0 && settled.scale < 0.9 * lacking.scale);
+    }
+
+    #[test]
+    fn a_frequency_is_found_from_beside_and_one_out_of_reach_stops_at_the_limit() {
+        for (truth, limit) in [(5.0, false), (1.004 * TONES.1, true)] {
+            let plant = Plant::new(4, &[(TONE, &[0.05, truth])]);
+            let start = Plant::model(&[(TONE, &[0.03, 0.995 * truth.min(TONES.1)])]);
+            let node = fit(&plant, &plant, start, 2, 20);
+            let moved = scales::of(&plant, &node.model);
+            assert_eq!(moved[2].is_at_limit(), limit, "{:?}", node.model);
+            let expected = truth.min(TONES.1);
+            assert!((node.model.values[2] / expected - 1.0).abs() < 2e-3, "{:?}", node.model);
+        }
+    }
+}

@@ -14,6 +14,8 @@ mod report;
 mod scales;
 pub mod screen;
 pub mod statistics;
+#[cfg(test)]
+mod testing;
 
 pub use report::discover;
 

@@ -390,26 +390,6 @@ fn finite(decision: &Decision) -> Decision {
     }
 }
 
-/// Decisions in one line each, for people.
-pub fn lines(decisions: &[Decision]) -> Vec<String> {
-    decisions
-        .iter()
-        .map(|d| {
-            format!(
-                "{} | {} against {}: {:+.1} +- {:.1} nats, {:.2} times the budget: {:?}{}",
-                d.rung,
-                d.candidate.join(" + "),
-                d.compared_with.join(" + "),
-                d.difference,
-                d.standard_error,
-                d.budget,
-                d.outcome,
-                if d.reason.is_empty() { String::new() } else { format!(" ({})", d.reason) }
-            )
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

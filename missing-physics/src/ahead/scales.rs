@@ -84,3 +84,51 @@ impl Moved {
         near(self.parameter.lower) || near(self.parameter.upper)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::testing::{PUSH, Plant, TONE, TONES};
+
+    /// A push of this size and a tone of this frequency.
+    fn moved(push: f64, omega: f64) -> (Moved, Moved) {
+        let plant = Plant::new(1, &[]);
+        let model = Plant::model(&[(PUSH, &[push]), (TONE, &[0.1, omega])]);
+        let all = of(&plant, &model);
+        (all[1].clone(), all[3].clone())
+    }
+
+    #[test]
+    fn steps_stay_within_the_limits() {
+        let (push, tone) = moved(0.02, 4.0);
+        assert_eq!(push.by(-1e9), 0.0);
+        assert_eq!(push.by(1e9), 10.0);
+        assert_eq!((tone.by(-9.0), tone.by(9.0)), TONES);
+        assert!((tone.by(0.1) / 4.0 - 0.1f64.exp()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_difference_is_taken_to_the_side_where_there_is_room() {
+        let (push, tone) = moved(0.0, TONES.1);
+        assert!(push.difference() > 0.0 && push.by(push.difference()) > 0.0);
+        assert!(tone.difference() < 0.0 && tone.by(tone.difference()) < TONES.1);
+    }
+
+    #[test]
+    fn a_small_amplitude_moves_in_shares_of_its_typical_size() {
+        assert_eq!(moved(0.0, 4.0).0.scale(), SHARE * 0.05);
+        assert_eq!(moved(3.0, 4.0).0.scale(), 3.0);
+    }
+
+    #[test]
+    fn the_end_of_a_search_is_known_and_holds_only_what_pushes_against_it() {
+        let (push, tone) = moved(0.0, TONES.0);
+        assert!(push.is_at_limit() && tone.is_at_limit());
+        assert!(push.is_held(-1.0) && !push.is_held(1.0));
+        assert!(tone.is_held(-1.0) && !tone.is_held(1.0));
+        let (push, tone) = moved(0.05, 1.01 * TONES.0);
+        assert!(!push.is_at_limit() && !tone.is_at_limit());
+        assert!(!push.is_held(-1.0) && !tone.is_held(-1.0));
+        assert!(moved(0.05, TONES.1).1.is_held(1.0));
+    }
+}

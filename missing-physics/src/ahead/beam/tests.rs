@@ -1,0 +1,178 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::*;
+use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, TONE, WAVE};
+use crate::report::Verdict;
+use crate::{Settings, discover};
+
+const ALL: [usize; 5] = [WAVE, BEAT, BOTH, TONE, PUSH];
+
+fn never() -> bool {
+    false
+}
+
+fn found(plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
+    let mut observer = ();
+    let search = Search::new(plant, plant, thresholds, ALL.to_vec(), &never, &mut observer);
+    let base = search.base(Plant::model(&[]));
+    search.run(base, most)
+}
+
+/// As few and as short as a test needs.
+fn narrow() -> Thresholds {
+    Thresholds { better: 20.0, beam: 1, ..Thresholds::default() }
+}
+
+#[test]
+fn two_hidden_effects_are_found_and_no_third_one() {
+    let plant = Plant::new(1, &[(WAVE, &[0.03]), (TONE, &[0.02, 5.0])]);
+    let found = found(&plant, Thresholds::default(), 4);
+    let mut added = found.added.clone();
+    added.sort_unstable();
+    assert_eq!(added, [WAVE, TONE]);
+    assert!(found.complete && !found.stopped && found.untried.is_empty());
+    assert_eq!((found.rungs.len(), found.gains.len(), found.costs.len()), (2, 2, 2));
+    assert!(found.gains.iter().chain(&found.costs).all(|gain| gain.nats > 100.0));
+    assert!(found.p_values.iter().all(|p| (1e-3..=0.01).contains(p)), "{:?}", found.p_values);
+    let last = found.rungs.last().unwrap();
+    let place = last.model.terms.iter().position(|term| *term == TONE).unwrap();
+    let tone = &last.model.values[last.model.range(&plant, place)];
+    assert!((tone[0] / 0.02 - 1.0).abs() < 0.1 && (tone[1] / 5.0 - 1.0).abs() < 0.01, "{tone:?}");
+    let names: Vec<&str> = found
+        .decisions
+        .iter()
+        .filter(|decision| decision.outcome == Outcome::Added && decision.rung == 2)
+        .flat_map(|decision| decision.candidate.iter().map(String::as_str))
+        .collect();
+    assert!(names.contains(&"wave") && names.contains(&"tone"), "{names:?}");
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_added() {
+    for seed in 40..60 {
+        let found = found(&Plant::new(seed, &[]), narrow(), 4);
+        assert!(found.added.is_empty() && found.rungs.is_empty() && found.complete, "seed {seed}");
+        assert!(found.ranking[0].rows.iter().all(|row| row.2 < 20.0), "seed {seed}");
+    }
+}
+
+#[test]
+fn an_effect_that_later_ones_make_idle_is_dropped() {
+    // Nearly the sum of both is the best single one, and of no use beside both.
+    let plant = Plant::new(2, &[(WAVE, &[0.2]), (BEAT, &[0.12])]);
+    let found = found(&plant, narrow(), 4);
+    let first = found.decisions.iter().find(|d| d.reason == "the best set of 1").unwrap();
+    assert_eq!(first.candidate, ["both"]);
+    let mut added = found.added.clone();
+    added.sort_unstable();
+    assert_eq!(added, [WAVE, BEAT], "{:#?}", found.decisions);
+    let dropped: Vec<&Decision> =
+        found.decisions.iter().filter(|d| d.outcome == Outcome::Dropped).collect();
+    assert_eq!(dropped.len(), 1);
+    assert_eq!(dropped[0].compared_with.len(), 3);
+    assert!(!dropped[0].candidate.contains(&"both".to_owned()), "{dropped:?}");
+}
+
+#[test]
+fn followed_side_by_side_both_are_named_without_the_detour() {
+    let plant = Plant::new(2, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
+    let found = found(&plant, Thresholds { better: 20.0, ..Thresholds::default() }, 2);
+    let mut added = found.added.clone();
+    added.sort_unstable();
+    assert_eq!(added, [WAVE, BEAT]);
+}
+
+#[test]
+fn the_flexible_form_of_an_effect_stands_only_where_it_is_needed() {
+    for (hidden, expected) in [((WAVE, &[0.05][..]), WAVE), ((BENT, &[0.05, 0.05][..]), BENT)] {
+        let found = found(&Plant::new(3, &[hidden]), narrow(), 1);
+        assert_eq!(found.added, [expected]);
+        assert!(found.complete);
+    }
+}
+
+#[test]
+fn a_model_of_which_more_is_left_than_the_sensors_make_is_incomplete() {
+    // A frequency that no tone can have.
+    let plant = Plant::new(4, &[(TONE, &[0.05, 30.0])]);
+    let found = found(&plant, narrow(), 2);
+    assert!(!found.complete, "{:?}", found.added);
+    let discovery = discover(&plant, &Settings::default(), &mut ()).unwrap();
+    assert!(!discovery.budget.unwrap().complete);
+    assert_ne!(discovery.verdict, Verdict::NothingMissing);
+}
+
+#[test]
+fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() {
+    let part = Plant::new(5, &[(WAVE, &[0.05]), (BEAT, &[0.03])]);
+    let whole = Plant::new(5, &[(WAVE, &[0.05])]);
+    let mut found = found(&part, Thresholds { beam: 3, ..narrow() }, 2);
+    assert_eq!(found.added, [WAVE, BEAT]);
+    found.confirm(&whole, &whole, &narrow());
+    assert_eq!(found.added, [WAVE]);
+    assert_eq!((found.rungs.len(), found.gains.len(), found.costs.len()), (1, 1, 1));
+    assert!(found.complete && found.notes[0].contains("beat"), "{:?}", found.notes);
+}
+
+#[test]
+fn an_effect_whose_search_ended_at_a_limit_is_known() {
+    let plant = Plant::new(6, &[(TONE, &[0.05, 8.04])]);
+    let mut observer = ();
+    let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &mut observer);
+    let start = Plant::model(&[(TONE, &[0.05, 7.99])]);
+    let node = fit::fit(&plant, &plant, start, 2, 12);
+    assert!(search.at_limit(&node, TONE), "{:?}", node.model);
+    let plant = Plant::new(6, &[(TONE, &[0.05, 5.0])]);
+    let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &mut observer);
+    let node = fit::fit(&plant, &plant, Plant::model(&[(TONE, &[0.05, 5.0])]), 0, 12);
+    assert!(!search.at_limit(&node, TONE) && !search.at_limit(&node, WAVE));
+}
+
+/// Asks to stop when the candidates of a rung have been looked at.
+struct StopAt<'a>(&'a AtomicBool, usize);
+
+impl Observer for StopAt<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        if let Event::Screening { rung, .. } = event {
+            self.0.fetch_or(*rung == self.1, Ordering::Relaxed);
+        }
+    }
+}
+
+#[test]
+fn a_stopped_search_says_so_keeps_what_it_has_and_lists_what_was_not_tried() {
+    let plant = Plant::new(7, &[(WAVE, &[0.05]), (TONE, &[0.02, 5.0])]);
+    for rung in [1, 2] {
+        let stop = AtomicBool::new(false);
+        let settings = Settings { stop: Some(&stop), thresholds: narrow(), ..Settings::default() };
+        let discovery = discover(&plant, &settings, &mut StopAt(&stop, rung)).unwrap();
+        assert!(discovery.notes[0].contains("Stopped"), "{:?}", discovery.notes);
+        assert!(!discovery.untried.is_empty());
+        for effect in &discovery.untried {
+            assert!(discovery.summary.contains(effect.as_str()), "{}", discovery.summary);
+        }
+        assert!(discovery.summary.contains("Not tried: "), "{}", discovery.summary);
+        if rung == 1 {
+            assert_eq!(discovery.verdict, Verdict::Stopped);
+            assert!(discovery.untried.iter().any(|effect| effect == "wave"));
+            assert!(discovery.added.is_empty() && discovery.ladder.len() == 1);
+        } else {
+            assert_eq!(discovery.added.len(), 1);
+            assert!(discovery.summary.starts_with("Found so far: "), "{}", discovery.summary);
+        }
+    }
+}
+
+#[test]
+fn threads_do_not_change_what_is_found() {
+    let plant = Plant::new(8, &[(WAVE, &[0.03]), (TONE, &[0.02, 5.0])]);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut found = pool.install(|| discover(&plant, &Settings::default(), &mut ()).unwrap());
+        found.wall_s = 0.0;
+        found
+    };
+    let one = on(1);
+    assert_eq!(one, on(2));
+    assert_eq!(one.added.len(), 2, "{}", one.summary);
+}

@@ -1,0 +1,296 @@
+//! A plant in closed form for tests: a lag of first order under known inputs, seen by a noisy sensor.
+//!
+//! `x' = 0.9 x + sum of the terms`, `y = x + noise`. Its predictor is the scalar Kalman filter, so that the prediction
+//! errors of the true model are white and as large as the noise.
+
+use aep_core::Scale;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::{Ahead, Trial, trials};
+use crate::family::{
+    Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term as About,
+};
+
+/// Samples and their distance, s.
+pub const SAMPLES: usize = 2000;
+pub const INTERVAL: f64 = 0.01;
+/// Standard deviation of the sensor.
+pub const NOISE: f64 = 0.02;
+/// Share of the state that is left after a sample.
+const LEFT: f64 = 0.9;
+/// Process noise of the settings.
+const PROCESS: [f64; 3] = [0.0, 0.01, 0.05];
+
+/// The terms, in the order of the family.
+pub const DRIVE: usize = 0;
+pub const WAVE: usize = 1;
+pub const BEAT: usize = 2;
+/// Nearly the sum of a wave and a beat.
+pub const BOTH: usize = 3;
+/// A sine of a frequency that is searched.
+pub const TONE: usize = 4;
+/// The more flexible form of a wave.
+pub const BENT: usize = 5;
+/// Never negative.
+pub const PUSH: usize = 6;
+
+/// Limits of the frequency of a tone, rad/s.
+pub const TONES: (f64, f64) = (2.0, 8.0);
+
+/// Frequencies that rise, so that no signal is itself again at a later time.
+fn wave(t: f64) -> f64 {
+    (0.1 * t * t + 0.4 * t).sin().signum() * (0.7 * t).cos()
+}
+fn beat(t: f64) -> f64 {
+    (0.17 * t * t + 1.0).cos()
+}
+fn rest(t: f64) -> f64 {
+    0.5 * (0.3 * t * t).sin()
+}
+
+/// What a term adds to the state at an instant.
+fn input(term: usize, values: &[f64], t: f64) -> f64 {
+    let shape = match term {
+        DRIVE => (1.3 * t).sin() + (3.1 * t).cos(),
+        WAVE => wave(t),
+        BEAT => beat(t),
+        BOTH => wave(t) + beat(t) + rest(t),
+        TONE => (values[1] * t).sin(),
+        BENT => return values[0] * wave(t) + values[1] * wave(t).powi(2),
+        _ => (0.06 * t * t + 2.0 * t).sin(),
+    };
+    values[0] * shape
+}
+
+/// A recording of the plant.
+pub struct Plant {
+    terms: Vec<About>,
+    time: Vec<f64>,
+    measured: Vec<f64>,
+    target: Vec<f64>,
+    doubt: Vec<f64>,
+    instants: Vec<(f64, usize)>,
+    coordinates: Vec<Coordinate>,
+    regimes: Vec<Regime>,
+}
+
+fn about(name: &str, lower: f64, more: Option<Parameter>) -> About {
+    let size = Parameter {
+        name: "size".into(),
+        unit: "V".into(),
+        role: Role::Amplitude,
+        lower,
+        upper: 10.0,
+        scale: Scale::Linear,
+        start: 0.05,
+    };
+    About {
+        name: name.into(),
+        title: name.into(),
+        equation: name.into(),
+        parameters: std::iter::once(size).chain(more).collect(),
+        always: name == "drive",
+    }
+}
+
+impl Plant {
+    /// The plant that obeys the drive at 1 and the `hidden` terms.
+    pub fn new(seed: u64, hidden: &[(usize, &[f64])]) -> Self {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let time: Vec<f64> = (0..SAMPLES).map(|k| k as f64 * INTERVAL).collect();
+        let target: Vec<f64> = time
+            .iter()
+            .map(|t| {
+                let hidden: f64 = hidden.iter().map(|(term, v)| input(*term, v, *t)).sum();
+                input(DRIVE, &[1.0], *t) + hidden
+            })
+            .collect();
+        let mut x = 0.0;
+        let mut measured = vec![0.0; SAMPLES];
+        for k in 1..SAMPLES {
+            let noise: f64 = StandardNormal.sample(&mut random);
+            x = LEFT * x + target[k - 1];
+            measured[k] = x + NOISE * noise;
+        }
+        let frequency = Parameter {
+            name: "omega".into(),
+            unit: "rad/s".into(),
+            role: Role::Shape,
+            lower: TONES.0,
+            upper: TONES.1,
+            scale: Scale::Log,
+            start: 4.0,
+        };
+        let bend = Parameter { name: "bend".into(), ..about("", -10.0, None).parameters.remove(0) };
+        let terms = vec![
+            about("drive", -10.0, None),
+            about("wave", -10.0, None),
+            about("beat", -10.0, None),
+            about("both", -10.0, None),
+            about("tone", -10.0, Some(frequency)),
+            about("wave:bent", -10.0, Some(bend)),
+            about("push", 0.0, None),
+        ];
+        let coordinate = Coordinate {
+            name: "time".into(),
+            unit: "s".into(),
+            values: time.clone(),
+            parity: None,
+            state: false,
+        };
+        Self {
+            terms,
+            measured,
+            target,
+            doubt: vec![0.0; SAMPLES],
+            instants: time.iter().skip(1).map(|t| (*t, 0)).collect(),
+            coordinates: vec![coordinate],
+            regimes: vec![Regime { name: "all".into(), member: vec![true; SAMPLES] }],
+            time,
+        }
+    }
+
+    /// Moves what the sensor shows at a sample.
+    pub fn disturb(&mut self, sample: usize, by: f64) {
+        self.measured[sample] += by;
+    }
+
+    /// The drive at its true size with more terms.
+    pub fn model(more: &[(usize, &[f64])]) -> Fitted {
+        let drive = Fitted { terms: vec![DRIVE], values: vec![1.0] };
+        more.iter().fold(drive, |model, (term, values)| model.with(*term, values))
+    }
+
+    /// Gain of the Kalman filter at a setting and the deviation of the error that it expects.
+    fn filter(setting: usize) -> (f64, f64) {
+        let (q, r) = (PROCESS[setting % PROCESS.len()].powi(2), NOISE * NOISE);
+        let mut p = 0.0;
+        for _ in 0..1000 {
+            let updated = p * r / (p + r);
+            p = LEFT * LEFT * updated + q;
+        }
+        (p / (p + r), (p + r).sqrt())
+    }
+
+    fn inputs(&self, model: &Fitted) -> Vec<f64> {
+        let mut sum = vec![0.0; SAMPLES];
+        for (place, term) in model.terms.iter().enumerate() {
+            let values = &model.values[model.range(self, place)];
+            for (sum, t) in sum.iter_mut().zip(&self.time) {
+                *sum += input(*term, values, *t);
+            }
+        }
+        sum
+    }
+}
+
+impl Ahead for Plant {
+    fn settings(&self) -> usize {
+        2 * PROCESS.len()
+    }
+    fn expected(&self, setting: usize) -> f64 {
+        Self::filter(setting).1
+    }
+    fn budget(&self) -> f64 {
+        NOISE
+    }
+    fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {
+        let one = |(model, setting): &(Fitted, usize)| {
+            let (gain, _) = Self::filter(*setting);
+            let inputs = self.inputs(model);
+            let mut x = 0.0;
+            (1..SAMPLES)
+                .map(|k| {
+                    x = LEFT * x + inputs[k - 1];
+                    let error = self.measured[k] - x;
+                    x += gain * error;
+                    error
+                })
+                .collect()
+        };
+        models.iter().map(one).collect()
+    }
+    fn instants(&self) -> &[(f64, usize)] {
+        &self.instants
+    }
+    fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
+        trials(self, model, term)
+    }
+    fn is_candidate(&self, term: usize) -> bool {
+        term != BENT
+    }
+    fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
+        let place = model.terms.iter().position(|t| *t == term && term == WAVE)?;
+        let size = model.values[model.range(self, place).start];
+        Some(model.without(self, WAVE).with(BENT, &[size, 0.0]))
+    }
+}
+
+impl ModelFamily for Plant {
+    fn terms(&self) -> &[About] {
+        &self.terms
+    }
+    fn quantity(&self) -> Quantity {
+        Quantity { name: "input".into(), unit: "V".into() }
+    }
+    fn time(&self) -> &[f64] {
+        &self.time
+    }
+    fn target(&self) -> &[f64] {
+        &self.target
+    }
+    fn doubt(&self) -> &[f64] {
+        &self.doubt
+    }
+    fn predict(&self, model: &Fitted, out: &mut [f64]) {
+        out.copy_from_slice(&self.inputs(model));
+    }
+    fn coordinates(&self) -> &[Coordinate] {
+        &self.coordinates
+    }
+    fn regimes(&self) -> &[Regime] {
+        &self.regimes
+    }
+    fn form_of(&self, term: usize) -> Option<usize> {
+        (term == BENT).then_some(WAVE)
+    }
+    fn joins(&self, model: &Fitted, term: usize) -> bool {
+        let main = |t: usize| self.form_of(t).unwrap_or(t);
+        model.terms.iter().all(|t| main(*t) != main(term))
+    }
+    fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
+        Some(Box::new(Borrowed(self)))
+    }
+}
+
+/// The plant as the box that the engine asks for.
+struct Borrowed<'a>(&'a Plant);
+
+impl Ahead for Borrowed<'_> {
+    fn settings(&self) -> usize {
+        self.0.settings()
+    }
+    fn expected(&self, setting: usize) -> f64 {
+        self.0.expected(setting)
+    }
+    fn budget(&self) -> f64 {
+        self.0.budget()
+    }
+    fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {
+        self.0.errors(models)
+    }
+    fn instants(&self) -> &[(f64, usize)] {
+        self.0.instants()
+    }
+    fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
+        Ahead::trials(self.0, model, term)
+    }
+    fn is_candidate(&self, term: usize) -> bool {
+        self.0.is_candidate(term)
+    }
+    fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
+        self.0.flexible(model, term)
+    }
+}
