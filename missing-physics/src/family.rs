@@ -198,6 +198,17 @@ pub trait ModelFamily: Sync {
         None
     }
 
+    /// The same recording read in the other way that its data hardly tell from this one (an input held between samples
+    /// or sampled); nothing where they do, or where it was stated.
+    fn other_reading(&self) -> Option<&Self> {
+        None
+    }
+
+    /// How the recording was read where nobody stated it, in words.
+    fn reading(&self) -> Option<String> {
+        None
+    }
+
     /// Parts of a long recording one sample ahead, for a search; nothing where the whole is short enough.
     fn ahead_in_part(&self) -> Option<Box<dyn crate::ahead::Ahead + '_>> {
         None

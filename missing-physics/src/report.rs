@@ -236,3 +236,27 @@ pub struct Discovery {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plots: Vec<Plot>,
 }
+
+/// By how much the prediction error of one reading of a recording must be below that of another one with fewer effects.
+const CLEARLY: f64 = 0.98;
+
+impl Discovery {
+    /// Whether nothing is missing and nothing is left: another reading of the recording need not be looked at.
+    pub(crate) fn is_all_there_is(&self) -> bool {
+        self.added.is_empty() && self.budget.is_some_and(|budget| budget.complete)
+    }
+
+    /// Whether it predicts better than what was found in another reading of the same recording, or as well with fewer
+    /// effects.
+    pub(crate) fn predicts_better_than(&self, other: &Self) -> bool {
+        let error = |found: &Self| found.budget.map_or(f64::INFINITY, |b| b.last * b.expected);
+        let (here, there) = (error(self), error(other));
+        if self.added.len() < other.added.len() {
+            here * CLEARLY <= there
+        } else if self.added.len() > other.added.len() {
+            here <= there * CLEARLY
+        } else {
+            here < there
+        }
+    }
+}

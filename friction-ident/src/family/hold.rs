@@ -3,16 +3,20 @@
 //! A command that is held from sample to sample and read as if it were sampled shows half a sample of delay, which
 //! is no physics of the drive.
 
-use missing_physics::ahead::beam::{Search, Thresholds};
-use missing_physics::ahead::{node::Node, statistics};
+use missing_physics::ahead::{fit, statistics};
 use missing_physics::{Hold, ModelFamily, Recording, discover, search};
 
+use super::ahead::View;
 use super::{FrictionFamily, Options, PreparationError};
 
 /// Effects of the model by which it is decided.
 const SIMPLE: [&str; 3] = ["coulomb", "viscous", "offset"];
+/// Log-likelihood per sample from which the simplest model decides.
+const CLEAR: f64 = 0.2;
 /// Degrees of freedom of the errors.
 const FREEDOM: f64 = 2.0;
+/// Steps of a fit at each process noise.
+const STEPS: usize = 5;
 
 /// What was decided about the force between samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,33 +34,67 @@ pub(super) fn decided(
 ) -> Result<FrictionFamily, PreparationError> {
     let with = |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
     let (sampled, held) = (with(Hold::Sampled)?, with(Hold::ZeroOrder)?);
-    let (Some(a), Some(b)) = (simple(&sampled), simple(&held)) else { return Ok(sampled) };
-    // An effect that the simple model lacks makes large errors at some moments, whatever the hold: errors of
-    // Student's distribution let the many calm moments decide.
-    let scale = statistics::spread(&a.errors).min(statistics::spread(&b.errors));
-    let loss = |node: &Node| -> f64 {
-        let each = node.errors.iter().map(|e| (e / scale).powi(2) / FREEDOM);
-        0.5 * (FREEDOM + 1.0) * each.map(f64::ln_1p).sum::<f64>() / node.correlation()
+    let (Some(a), Some(b)) = (likelihood(&sampled), likelihood(&held)) else { return Ok(sampled) };
+    let nats = (a - b).abs();
+    let (hold, mut family, other) = if b > a {
+        (Hold::ZeroOrder, held, sampled)
+    } else {
+        (Hold::Sampled, sampled, held)
     };
-    let nats = loss(&a) - loss(&b);
-    let (hold, mut family) =
-        if nats > 0.0 { (Hold::ZeroOrder, held) } else { (Hold::Sampled, sampled) };
-    family.hold = Some(HoldChoice { hold, nats: nats.abs() });
+    let choose = |hold: Hold| Some(HoldChoice { hold, nats });
+    family.hold = choose(hold);
+    if nats < CLEAR * recording.len() as f64 {
+        // The search itself has to tell.
+        let mut other = other;
+        let second = if hold == Hold::Sampled { Hold::ZeroOrder } else { Hold::Sampled };
+        other.hold = choose(second);
+        family.other_hold = Some(Box::new(other));
+    }
     Ok(family)
 }
 
-/// The simplest model at its best.
-fn simple(family: &FrictionFamily) -> Option<Node> {
-    let part = family.ahead_in_part();
-    let whole = family.ahead()?;
-    let ahead = part.as_deref().unwrap_or(&*whole);
+impl HoldChoice {
+    /// What was decided, in words.
+    pub(super) fn words(&self, by_search: bool) -> String {
+        let how = match self.hold {
+            Hold::ZeroOrder => "held from one sample to the next",
+            Hold::Sampled => "sampled, changing evenly between samples",
+        };
+        let why = if by_search {
+            "the simplest model hardly tells, so that the effects were looked for either way".to_owned()
+        } else {
+            format!("that predicts better by {:.0} nats", self.nats)
+        };
+        format!("The force is taken as {how}: {why}. Say --hold to decide it yourself.")
+    }
+}
+
+/// Log-likelihood of the simplest model at its best process noise, nats, while the axis moves: at rest friction holds
+/// whatever the force does. Errors have Student's distribution: what the simple model lacks makes large errors at
+/// some moments, whatever the hold, and the many others shall decide.
+fn likelihood(family: &FrictionFamily) -> Option<f64> {
+    let ahead = family.thinned.as_ref().or(family.ahead.as_ref())?;
+    let moving = ahead.predictor.counted_and_moving();
+    let view = View { family, ahead };
     let known = |name: &&&str| family.terms().iter().any(|term| term.name == ***name);
     let names: Vec<String> = SIMPLE.iter().filter(known).map(|name| (*name).to_owned()).collect();
     let terms = discover::terms(family, &names).ok()?;
     let everywhere = vec![1.0; family.target().len()];
-    let start = search::identify(family, &terms, &everywhere, 1).fit.model;
-    let mut observer = ();
-    let search =
-        Search::new(family, ahead, Thresholds::default(), Vec::new(), &|| false, &mut observer);
-    Some(search.base(start))
+    let mut model = search::identify(family, &terms, &everywhere, 1).fit.model;
+    let mut best: Option<f64> = None;
+    // From much process noise to little: the valley narrows.
+    for setting in (0..ahead.predictor.settings() / 2).rev() {
+        let node = fit::fit(family, &view, model, setting, STEPS);
+        let errors: Vec<f64> =
+            node.errors.iter().zip(&moving).filter(|(_, moves)| **moves).map(|(e, _)| *e).collect();
+        let scale = statistics::spread(&errors);
+        let each = errors.iter().map(|e| ((e / scale).powi(2) / FREEDOM).ln_1p());
+        let loss = 0.5 * (FREEDOM + 1.0) * each.sum::<f64>() + errors.len() as f64 * scale.ln();
+        let nats = -loss / statistics::correlation(&errors);
+        if nats.is_finite() {
+            best = Some(best.map_or(nats, |best| best.max(nats)));
+        }
+        model = node.model;
+    }
+    best
 }

@@ -76,6 +76,7 @@ pub struct FrictionFamily {
     blocks: Vec<Range<usize>>,
     stroke: (f64, f64),
     hold: Option<HoldChoice>,
+    other_hold: Option<Box<Self>>,
     ahead: Option<ahead::OneAhead>,
     thinned: Option<ahead::OneAhead>,
     top_speed: f64,
@@ -131,6 +132,7 @@ impl FrictionFamily {
             blocks: coordinates::cycles(&prepared),
             stroke,
             hold: None,
+            other_hold: None,
             ahead: None,
             thinned: None,
             top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
@@ -391,6 +393,14 @@ impl ModelFamily for FrictionFamily {
     fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
         let ahead = self.ahead.as_ref()?;
         Some(Box::new(ahead::View { family: self, ahead }))
+    }
+
+    fn other_reading(&self) -> Option<&Self> {
+        self.other_hold.as_deref()
+    }
+
+    fn reading(&self) -> Option<String> {
+        self.hold.map(|choice| choice.words(self.other_hold.is_some()))
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {

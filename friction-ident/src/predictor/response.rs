@@ -84,6 +84,12 @@ impl Predictor {
         errors
     }
 
+    /// Whether the axis moves, at each sample that counts.
+    pub fn counted_and_moving(&self) -> Vec<bool> {
+        let moving = self.moving();
+        self.counted.iter().map(|k| moving[*k]).collect()
+    }
+
     /// Whether the axis moves in the interval before a sample.
     fn moving(&self) -> Vec<bool> {
         let mut moving = vec![false; self.time.len()];

@@ -61,6 +61,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     found.judge(family, ahead, &thresholds);
     observer.event(&Event::Finishing);
     let mut discovery = Report { family, ahead, settings, found }.discovery();
+    discovery.notes.extend(family.reading());
     discovery.seed = settings.seed;
     discovery.wall_s = started.elapsed().as_secs_f64();
     discovery
