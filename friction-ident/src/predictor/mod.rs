@@ -266,3 +266,6 @@ impl Predictor {
         Start { time: self.time[first], command, ..Start::at(self.position[first], velocity) }
     }
 }
+
+#[cfg(test)]
+mod tests;

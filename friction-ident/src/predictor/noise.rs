@@ -1,6 +1,7 @@
 //! What is known of the noise of encoder and force before any model is fitted.
 
 use missing_physics::Recording;
+use missing_physics::basis::{dot, gram, solve};
 use missing_physics::data_check::count_of;
 
 /// Sum of the squares of the binomial coefficients of a fourth difference.
@@ -94,7 +95,9 @@ fn spread(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
-    values.iter_mut().for_each(|value| *value = value.abs());
+    for value in &mut values {
+        *value = value.abs();
+    }
     let middle = values.len() / 2;
     MEDIAN * *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
@@ -109,7 +112,6 @@ fn of_controller(recording: &Recording, y: &[f64], u: &[f64]) -> Option<f64> {
     let columns =
         [column(&|k| error[k]), column(&|k| error[k] - error[k - 1]), column(&|_| 1.0)].to_vec();
     let target = column(&|k| u[k]);
-    use missing_physics::basis::{dot, gram, solve};
     let moment: Vec<f64> = columns.iter().map(|c| dot(c, &target)).collect();
     let law = solve(&gram(&columns), &moment, &[0, 1, 2]);
     let left = |i: usize| target[i] - (0..3).map(|j| law[j] * columns[j][i]).sum::<f64>();

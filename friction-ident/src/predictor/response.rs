@@ -94,11 +94,12 @@ impl Predictor {
     fn moving(&self) -> Vec<bool> {
         let mut moving = vec![false; self.time.len()];
         for segment in &self.segments {
-            for k in segment.start + 1..segment.end {
+            for (k, moving) in moving[..segment.end].iter_mut().enumerate().skip(segment.start + 1)
+            {
                 let from = k.saturating_sub(AROUND).max(segment.start);
                 let to = (k + AROUND).min(segment.end - 1);
                 let way = (self.position[to] - self.position[from]).abs();
-                moving[k] = way > MOVED * self.noise.position;
+                *moving = way > MOVED * self.noise.position;
             }
         }
         moving

@@ -1,0 +1,236 @@
+use missing_physics::Channel;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use super::*;
+use crate::axis::Axis;
+use crate::simulator::simulate;
+
+const MASS: f64 = 33.0;
+const DAMPING: f64 = 200.0;
+/// Counts of the encoder, m.
+const COUNT: f64 = 1e-6;
+const SAMPLES: u32 = 8000;
+
+fn table() -> Model {
+    Model::new(Axis::Linear, MASS)
+        .and_then(|m| m.with("coulomb", &[("F_C", 8.0)]))
+        .and_then(|m| m.with("viscous", &[("F_v", DAMPING)]))
+        .unwrap()
+}
+
+/// What the sensors add: standard deviations.
+#[derive(Clone, Copy)]
+struct Sensors {
+    position: f64,
+    force: f64,
+}
+
+const QUIET: Sensors = Sensors { position: 0.0, force: 0.0 };
+
+/// A recording of `model` that is simulated with twenty steps a sample and read in counts.
+fn recording(model: &Model, hold: Hold, sensors: Sensors) -> Recording {
+    let time: Vec<f64> = (0..SAMPLES).map(|k| f64::from(k) * 1e-3).collect();
+    let command = |t: &f64| 24.0 * (5.0 * t).sin() + 12.0 * (13.0 * t + 1.0).sin();
+    let force: Vec<f64> = time.iter().map(command).collect();
+    let input = Input::new(&time, &force, hold).with_max_step(5e-5);
+    let out = simulate(model, &input, &Start::at(0.0, 0.0)).unwrap();
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(9);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let shown = |x: &f64| ((x + sensors.position * normal()) / COUNT).round() * COUNT;
+    let position = out.position.iter().map(shown).collect();
+    let force = force.iter().map(|f| f + sensors.force * normal()).collect();
+    let channels = vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+    Recording::new("simulated", time, channels).unwrap().with_hold(hold)
+}
+
+fn predictor(recording: &Recording) -> Predictor {
+    Predictor::new(recording, MASS, DAMPING).unwrap()
+}
+
+fn rms(errors: &[f64]) -> f64 {
+    (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
+}
+
+/// Autocorrelation at lag 1.
+fn lag_one(errors: &[f64]) -> f64 {
+    let product: f64 = errors.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    product / errors.iter().map(|e| e * e).sum::<f64>()
+}
+
+/// Setting at which a model predicts best, and its errors there.
+fn best(predictor: &Predictor, model: &Model) -> (usize, Vec<f64>) {
+    let trials: Vec<(Model, usize)> =
+        (0..predictor.settings()).map(|setting| (model.clone(), setting)).collect();
+    let all = predictor.errors(&trials).into_iter().enumerate();
+    all.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1))).unwrap()
+}
+
+#[test]
+fn what_the_true_plant_leaves_is_white_and_as_large_as_the_sensors_make_it() {
+    for hold in [Hold::ZeroOrder, Hold::Sampled] {
+        for position in [0.0, 2e-6] {
+            let predictor = predictor(&recording(&table(), hold, Sensors { position, ..QUIET }));
+            let (setting, errors) = best(&predictor, &table());
+            let ratio = rms(&errors) / predictor.budget();
+            // Of counts alone the noise is told too large, and so is the budget.
+            let low = if position == 0.0 { 0.75 } else { 0.85 };
+            assert!((low..1.15).contains(&ratio), "{hold:?} {position}: {ratio} at {setting}");
+            let lag = lag_one(&errors);
+            assert!(lag.abs() < 0.1, "{hold:?} {position}: {lag} at {setting}");
+        }
+    }
+}
+
+#[test]
+fn a_command_that_is_held_and_read_as_sampled_shows() {
+    let data = recording(&table(), Hold::ZeroOrder, QUIET);
+    let truth = best(&predictor(&data), &table()).1;
+    let wrong = best(&predictor(&data.clone().with_hold(Hold::Sampled)), &table()).1;
+    assert!(rms(&wrong) > 1.02 * rms(&truth), "{:.3e} {:.3e}", rms(&wrong), rms(&truth));
+}
+
+#[test]
+fn a_stribeck_hump_that_the_model_lacks_raises_what_is_left() {
+    let truth = table().with("stribeck", &[("dF", 4.0), ("v_s", 1e-2)]).unwrap();
+    let noisy = Sensors { position: 5e-7, ..QUIET };
+    let predictor = predictor(&recording(&truth, Hold::ZeroOrder, noisy));
+    let (with, errors) = best(&predictor, &truth);
+    let (without, more) = best(&predictor, &table());
+    let of_budget = |errors: &[f64]| rms(errors) / predictor.budget();
+    assert!(of_budget(&errors) < 1.15, "{}", of_budget(&errors));
+    assert!(of_budget(&more) > 1.2 * of_budget(&errors), "{}", of_budget(&more));
+    // What is not known acts as a force.
+    assert!(predictor.process(without) > predictor.process(with), "{without} {with}");
+}
+
+#[test]
+fn the_noise_of_the_position_is_known_within_a_fifth() {
+    for position in [5e-7, 1e-6, 5e-6] {
+        let data = recording(&table(), Hold::ZeroOrder, Sensors { position, ..QUIET });
+        let truth = position.hypot(COUNT / 12f64.sqrt());
+        let known = predictor(&data).noise().position;
+        assert!((known / truth - 1.0).abs() < 0.2, "{known:.3e} {truth:.3e}");
+    }
+}
+
+/// The median of fourth differences of evenly spread rounding errors is 1.23 times that of normal errors as large.
+#[test]
+fn of_counts_alone_the_noise_is_told_a_quarter_too_large_at_most() {
+    let data = recording(&table(), Hold::ZeroOrder, QUIET);
+    let ratio = predictor(&data).noise().position / (COUNT / 12f64.sqrt());
+    assert!((0.99..1.25).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn the_noise_that_a_force_can_hold_is_known_within_a_fifth() {
+    for force in [0.1, 0.5] {
+        let data = recording(&table(), Hold::ZeroOrder, Sensors { force, ..QUIET });
+        let noise = *predictor(&data).noise();
+        assert!((noise.force_at_most / force - 1.0).abs() < 0.2, "{noise:?}");
+        // White noise of a force may be what acts: only a resolution or a law of control says that it is none.
+        assert_eq!(noise.force, 0.0);
+    }
+}
+
+#[test]
+fn what_a_law_of_control_leaves_is_noise_of_the_force_and_counts_of_it_are() {
+    let data = recording(&table(), Hold::ZeroOrder, QUIET);
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(10);
+    let position = data.channel("position").unwrap().values.clone();
+    let force = data.channel("force").unwrap().values.clone();
+    let (gain, noise) = (1e5, 0.3);
+    let law = |(x, f): (&f64, &f64)| x + f / gain;
+    let reference: Vec<f64> = position.iter().zip(&force).map(law).collect();
+    let with = |force: Vec<f64>, reference: Option<&Vec<f64>>| {
+        let mut channels = vec![
+            Channel::new("force", "N", force),
+            Channel::new("position", "m", position.clone()),
+        ];
+        channels.extend(reference.map(|r| Channel::new("reference", "m", r.clone())));
+        let data = Recording::new("control", data.time().to_vec(), channels).unwrap();
+        predictor(&data.with_hold(Hold::ZeroOrder)).noise().force
+    };
+    let noisy: Vec<f64> = force
+        .iter()
+        .map(|f| {
+            let normal: f64 = StandardNormal.sample(&mut random);
+            f + noise * normal
+        })
+        .collect();
+    let known = with(noisy, Some(&reference));
+    assert!((known / noise - 1.0).abs() < 0.2, "{known}");
+    let step = 0.25;
+    let known = with(force.iter().map(|f| (f / step).round() * step).collect(), None);
+    assert!((known / (step / 12f64.sqrt()) - 1.0).abs() < 0.2, "{known}");
+}
+
+#[test]
+fn errors_do_not_depend_on_the_number_of_threads_nor_on_the_models_beside() {
+    let model = table().with("stribeck", &[]).unwrap();
+    let predictor = predictor(&recording(&model, Hold::ZeroOrder, QUIET));
+    let models: Vec<(Model, usize)> = (0..23)
+        .map(|k| {
+            let mut model = model.clone();
+            model.set("coulomb.F_C", 7.0 + 0.1 * f64::from(k)).unwrap();
+            (model, k as usize % predictor.settings())
+        })
+        .collect();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| predictor.errors(&models))
+    };
+    let all = on(1);
+    assert_eq!(all, on(2));
+    assert_eq!(all, on(5));
+    let alone = predictor.errors(&models[20..21]).swap_remove(0);
+    assert_eq!(all[20], alone);
+}
+
+#[test]
+fn a_model_that_runs_away_errs_as_much_as_can_be() {
+    let mut model = table();
+    let predictor = predictor(&recording(&model, Hold::ZeroOrder, QUIET));
+    model.set("mass", 1e-3).unwrap();
+    model.set("coulomb.F_C", 0.0).unwrap();
+    model.set("viscous.F_v", 0.0).unwrap();
+    let errors = predictor.errors(&[(model, 0)]).swap_remove(0);
+    assert!(errors.iter().all(|e| e.is_finite()) && rms(&errors) > 100.0 * predictor.budget());
+}
+
+#[test]
+fn a_part_of_a_recording_has_as_many_samples_as_asked_and_all_of_its_places() {
+    let data = recording(&table(), Hold::ZeroOrder, QUIET);
+    let whole = predictor(&data);
+    assert!(whole.thinned(SAMPLES as usize).is_none());
+    let part = whole.thinned(3000).unwrap();
+    let samples: usize = part.segments.iter().map(Range::len).sum();
+    assert!((2000..=4000).contains(&samples), "{samples}");
+    assert!(part.counted().iter().all(|k| part.segments[part.piece(*k)].contains(k)));
+    assert!(part.counted().last().unwrap() > &(SAMPLES as usize / 2));
+    let ratio = rms(&best(&part, &table()).1) / rms(&best(&whole, &table()).1);
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+}
+
+#[test]
+fn the_response_to_a_ripple_is_what_a_simulation_of_it_changes() {
+    let ripple =
+        |a: f64, b: f64| table().with("ripple", &[("a_1", a), ("b_1", b), ("l", 5e-3)]).unwrap();
+    let predictor = predictor(&recording(&table(), Hold::ZeroOrder, QUIET));
+    let small = 0.01;
+    for setting in [1, 3] {
+        let models = [(0.0, 0.0), (small, 0.0), (0.0, small)].map(|(a, b)| (ripple(a, b), setting));
+        let errors = predictor.errors(&models);
+        let response = predictor.responses(setting, Wave::Force, &[5e-3]).swap_remove(0);
+        for (column, moved) in response.iter().zip(&errors[1..]) {
+            let change: Vec<f64> =
+                moved.iter().zip(&errors[0]).map(|(e, old)| (e - old) / small).collect();
+            let column: Vec<f64> = column.iter().map(|value| f64::from(*value)).collect();
+            let product: f64 = column.iter().zip(&change).map(|(a, b)| a * b).sum();
+            let cosine = product / (rms(&column) * rms(&change) * column.len() as f64);
+            assert!(cosine.abs() > 0.9, "{setting}: {cosine}");
+            assert!((rms(&column) / rms(&change) - 1.0).abs() < 0.25, "{setting}");
+        }
+    }
+}
