@@ -241,9 +241,10 @@ pub struct Discovery {
 const CLEARLY: f64 = 0.98;
 
 impl Discovery {
-    /// Whether nothing is missing and nothing is left: another reading of the recording need not be looked at.
+    /// Whether at most one effect is missing and nothing is left: another reading of the recording need not be looked
+    /// at. A wrong reading takes an effect of its own to make up for it.
     pub(crate) fn is_all_there_is(&self) -> bool {
-        self.added.is_empty() && self.budget.is_some_and(|budget| budget.complete)
+        self.added.len() <= 1 && self.budget.is_some_and(|budget| budget.complete)
     }
 
     /// Whether it predicts better than what was found in another reading of the same recording, or as well with fewer

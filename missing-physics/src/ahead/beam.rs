@@ -46,7 +46,7 @@ impl Default for Thresholds {
             share: 0.02,
             as_good: (6.0, 0.02),
             complete: 1.3,
-            explained: 0.5,
+            explained: 0.25,
             beam: 3,
             fitted: 5,
             most: 4,
