@@ -4,12 +4,17 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::ahead::compare::Comparison;
+use crate::ahead::node::Node;
+use crate::ahead::{Ahead, fit};
 use crate::discover::{DiscoverError, Settings, evaluate, suggest, terms};
 use crate::family::{Fitted, ModelFamily};
 use crate::ladder;
 use crate::report::{Candidate, Rung, SplitError};
 use crate::split::Split;
 
+/// Steps of a fit on these recordings.
+const STEPS: usize = 10;
 /// Another view contradicts an effect where its error grows by more than this factor.
 const CONTRADICTION: f64 = 1.05;
 
@@ -30,6 +35,9 @@ pub struct Confirmation {
     pub gain: Option<f64>,
     /// Its p-value there.
     pub p_value: Option<f64>,
+    /// What it gains in log-likelihood of the prediction errors as it was found, nothing fitted, nats.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nats: Option<f64>,
     /// Its place there among the candidates that gain more than chance, from 1.
     pub place: Option<usize>,
 }
@@ -53,6 +61,9 @@ pub fn on<F: ModelFamily + ?Sized>(
     ladder: &[Rung],
     settings: &Settings<'_>,
 ) -> Result<Vec<Confirmation>, DiscoverError> {
+    if let Some(ahead) = family.ahead() {
+        return one_ahead(family, &*ahead, ladder, settings);
+    }
     let key = ladder::relative_key(family);
     let mut all: Vec<Confirmation> = Vec::new();
     for (k, rung) in ladder.iter().enumerate() {
@@ -69,21 +80,44 @@ pub fn on<F: ModelFamily + ?Sized>(
     Ok(all)
 }
 
+/// Every rung by its prediction errors: as it was found, and with all parameters fitted here.
+fn one_ahead<F: ModelFamily + ?Sized>(
+    family: &F,
+    ahead: &dyn Ahead,
+    ladder: &[Rung],
+    settings: &Settings<'_>,
+) -> Result<Vec<Confirmation>, DiscoverError> {
+    let comparison = Comparison::new(family, ahead);
+    let mut all: Vec<Confirmation> = Vec::new();
+    let mut below: Option<(Node, Node)> = None;
+    for rung in ladder {
+        let mut here = as_found(family, rung)?;
+        let model = model_of(family, rung)?;
+        let setting = fit::best_setting(ahead, &model);
+        let found = fit::evaluated(ahead, model.clone(), setting);
+        let anew = fit::fit(family, ahead, model, setting, STEPS);
+        let anew = fit::settled(family, ahead, anew, STEPS);
+        if let Some((before, before_anew)) = below.filter(|_| rung.added.is_some()) {
+            let by = comparison.unfitted(&before, &found);
+            let gain = comparison.compare(&before_anew, &anew);
+            let points = anew.errors.len() as f64 / anew.correlation();
+            here.gain = Some(1.0 - (-2.0 * gain.nats / points.max(1.0)).exp());
+            here.p_value = Some(by.p_value());
+            here.nats = Some(by.nats);
+            here.holds = Some(by.nats > 0.0 && gain.nats > settings.thresholds.better);
+        }
+        below = Some((found, anew));
+        all.push(here);
+    }
+    Ok(all)
+}
+
 /// The errors of a rung with the parameters that it has.
 fn as_found<F: ModelFamily + ?Sized>(
     family: &F,
     rung: &Rung,
 ) -> Result<Confirmation, DiscoverError> {
-    let indices = terms(family, &rung.effects)?;
-    let values = indices.iter().flat_map(|&index| {
-        let term = &family.terms()[index];
-        term.parameters.iter().map(|parameter| {
-            let found = rung.parameters.get(&term.key(parameter));
-            found.map_or(parameter.start, |estimate| estimate.value)
-        })
-    });
-    let values = values.collect();
-    let fit = evaluate(family, Fitted { terms: indices, values });
+    let fit = evaluate(family, model_of(family, rung)?);
     let points = family.target().len();
     let split = Split::new(points, family.blocks());
     let fitted = split.fit(points).iter().filter(|fit| **fit).count() as f64 / points as f64;
@@ -99,8 +133,23 @@ fn as_found<F: ModelFamily + ?Sized>(
         holds: None,
         gain: None,
         p_value: None,
+        nats: None,
         place: None,
     })
+}
+
+/// The model of a rung as it was found.
+fn model_of<F: ModelFamily + ?Sized>(family: &F, rung: &Rung) -> Result<Fitted, DiscoverError> {
+    let indices = terms(family, &rung.effects)?;
+    let values = indices.iter().flat_map(|&index| {
+        let term = &family.terms()[index];
+        term.parameters.iter().map(|parameter| {
+            let found = rung.parameters.get(&term.key(parameter));
+            found.map_or(parameter.start, |estimate| estimate.value)
+        })
+    });
+    let values = values.collect();
+    Ok(Fitted { terms: indices, values })
 }
 
 /// What `added` gains on a model of `effects` that is identified on these recordings.

@@ -67,6 +67,10 @@ const IN_FULL: usize = 4;
 const PROMISING: f64 = 2.0;
 /// A model is well inside the budget below this multiple of it.
 const INSIDE: f64 = 1.12;
+/// Candidates that are fitted before it is asked whether others are needed, and the share of their promise from which
+/// another one is a rival.
+const FIRST: usize = 2;
+const RIVAL: f64 = 0.1;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 
@@ -378,10 +382,17 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             mains.push(main);
             starts.push(promise);
         }
-        let fitted: Vec<(usize, Option<Node>)> = starts
-            .par_iter()
-            .map(|promise| (promise.term, self.begun(promise, from.setting)))
-            .collect();
+        let begin = |promises: &[&Promise]| -> Vec<(usize, Option<Node>)> {
+            promises.par_iter().map(|p| (p.term, self.begun(p, from.setting))).collect()
+        };
+        // Where one of the first leaves no more than the sensors make, only those that promise as much are rivals.
+        let (first, others) = starts.split_at(FIRST.min(starts.len()));
+        let mut fitted = begin(first);
+        let inside = fitted.iter().flat_map(|(_, node)| node).any(|node| self.budget(node) < INSIDE);
+        let top = starts.first().map_or(0.0, |promise| promise.gain);
+        let rivals: Vec<&Promise> =
+            others.iter().copied().filter(|p| !inside || p.gain >= RIVAL * top).collect();
+        fitted.extend(begin(&rivals));
         self.untried
             .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
         let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();

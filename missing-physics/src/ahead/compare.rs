@@ -27,6 +27,16 @@ pub struct Difference {
     pub error: f64,
 }
 
+impl Difference {
+    /// Chance of as large a gain where there is none, from its standard error (one-sided, normal).
+    pub fn p_value(&self) -> f64 {
+        if self.error <= 0.0 {
+            return if self.nats > 0.0 { 0.0 } else { 1.0 };
+        }
+        0.5 * statrs::function::erf::erfc(self.nats / self.error / std::f64::consts::SQRT_2)
+    }
+}
+
 /// Held-out losses of models, with what all comparisons share.
 pub struct Comparison<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
@@ -64,10 +74,22 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
     /// How much better `b` predicts than `a`.
     pub fn compare(&self, a: &Node, b: &Node) -> Difference {
         let scale = a.scale.min(b.scale);
-        let (before, after) = (self.held_out(a, scale), self.held_out(b, scale));
+        self.difference(&self.held_out(a, scale), &self.held_out(b, scale), b.correlation())
+    }
+
+    /// The same of two models that were not fitted to this recording: nothing is held out.
+    pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
+        let scale = a.scale.min(b.scale);
+        let loss = |node: &Node| -> Vec<f64> {
+            node.errors.iter().map(|e| statistics::loss(e / scale)).collect()
+        };
+        self.difference(&loss(a), &loss(b), b.correlation())
+    }
+
+    fn difference(&self, before: &[f64], after: &[f64], correlation: f64) -> Difference {
         let mut sums = vec![0.0; self.blocks];
         for (k, block) in self.block.iter().enumerate() {
-            sums[*block] += (before[k] - after[k]) / b.correlation();
+            sums[*block] += (before[k] - after[k]) / correlation;
         }
         let nats: f64 = sums.iter().sum();
         let mean = nats / self.blocks.max(1) as f64;
