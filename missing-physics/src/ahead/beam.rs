@@ -87,7 +87,7 @@ pub struct Found {
     pub gains: Vec<Difference>,
     /// What the last model loses without each of the terms added.
     pub costs: Vec<Difference>,
-    /// Sets of terms that predict as well as the ones found.
+    /// Sets of added terms that predict as well as the ones found.
     pub as_good: Vec<Vec<usize>>,
     /// Candidates beside the best set of each size.
     pub ranking: Vec<Ranked>,
@@ -637,7 +637,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .flatten()
             .filter(|set| self.key(set) != self.key(last))
             .filter(|set| self.comparison.compare(set, last).nats < self.thresholds.better)
-            .map(|set| set.effects(self.family))
+            .map(|set| Self::added(&base, set))
             .collect();
         let stopped = (self.stop)();
         let top = rungs.last().unwrap_or(&base).clone();

@@ -36,6 +36,9 @@ pub const BENT: usize = 5;
 /// Never negative.
 pub const PUSH: usize = 6;
 
+/// A wave that comes a little later: what the sensor shows hardly tells it from one.
+pub const TWIN: usize = 7;
+
 /// Limits of the frequency of a tone, rad/s.
 pub const TONES: (f64, f64) = (2.0, 8.0);
 
@@ -58,6 +61,7 @@ fn input(term: usize, values: &[f64], t: f64) -> f64 {
         BEAT => beat(t),
         BOTH => wave(t) + beat(t) + rest(t),
         TONE => (values[1] * t).sin(),
+        TWIN => wave(t - 2e-4),
         BENT => return values[0] * wave(t) + values[1] * wave(t).powi(2),
         _ => (0.06 * t * t + 2.0 * t).sin(),
     };
@@ -132,6 +136,7 @@ impl Plant {
             about("tone", -10.0, Some(frequency)),
             about("wave:bent", -10.0, Some(bend)),
             about("push", 0.0, None),
+            about("twin", -10.0, None),
         ];
         let coordinate = Coordinate {
             name: "time".into(),

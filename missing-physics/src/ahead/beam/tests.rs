@@ -18,6 +18,11 @@ fn found(plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
     search.run(base, most)
 }
 
+/// Without the wave that none can be told from.
+fn settings<'a>() -> Settings<'a> {
+    Settings { exclude: vec!["twin".to_owned()], ..Settings::default() }
+}
+
 /// As few and as short as a test needs.
 fn narrow() -> Thresholds {
     Thresholds { better: 20.0, beam: 1, ..Thresholds::default() }
@@ -97,7 +102,7 @@ fn a_model_of_which_more_is_left_than_the_sensors_make_is_incomplete() {
     let plant = Plant::new(4, &[(TONE, &[0.05, 30.0])]);
     let found = found(&plant, narrow(), 2);
     assert!(!found.complete, "{:?}", found.added);
-    let discovery = discover(&plant, &Settings::default(), &mut ()).unwrap();
+    let discovery = discover(&plant, &settings(), &mut ()).unwrap();
     assert!(!discovery.budget.unwrap().complete);
     assert_ne!(discovery.verdict, Verdict::NothingMissing);
 }
@@ -144,7 +149,7 @@ fn a_stopped_search_says_so_keeps_what_it_has_and_lists_what_was_not_tried() {
     let plant = Plant::new(7, &[(WAVE, &[0.05]), (TONE, &[0.02, 5.0])]);
     for rung in [1, 2] {
         let stop = AtomicBool::new(false);
-        let settings = Settings { stop: Some(&stop), thresholds: narrow(), ..Settings::default() };
+        let settings = Settings { stop: Some(&stop), thresholds: narrow(), ..settings() };
         let discovery = discover(&plant, &settings, &mut StopAt(&stop, rung)).unwrap();
         assert!(discovery.notes[0].contains("Stopped"), "{:?}", discovery.notes);
         assert!(!discovery.untried.is_empty());
@@ -168,11 +173,26 @@ fn threads_do_not_change_what_is_found() {
     let plant = Plant::new(8, &[(WAVE, &[0.03]), (TONE, &[0.02, 5.0])]);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let mut found = pool.install(|| discover(&plant, &Settings::default(), &mut ()).unwrap());
+        let mut found = pool.install(|| discover(&plant, &settings(), &mut ()).unwrap());
         found.wall_s = 0.0;
         found
     };
     let one = on(1);
     assert_eq!(one, on(2));
     assert_eq!(one.added.len(), 2, "{}", one.summary);
+}
+
+#[test]
+fn what_the_data_cannot_tell_apart_is_ambiguous_beside_whatever_base() {
+    for base in [vec![], vec!["push".to_owned()]] {
+        let push = if base.is_empty() { 0.0 } else { 0.05 };
+        let plant = Plant::new(9, &[(PUSH, &[push]), (WAVE, &[0.05])]);
+        let exclude = ["both", "tone"].map(str::to_owned).to_vec();
+        let settings = Settings { base, exclude, ..Settings::default() };
+        let found = discover(&plant, &settings, &mut ()).unwrap();
+        assert_eq!(found.verdict, Verdict::Ambiguous, "{}", found.summary);
+        let mut rivals = found.ambiguous[0].effects.clone();
+        rivals.sort();
+        assert_eq!(rivals, ["twin", "wave"]);
+    }
 }
