@@ -124,7 +124,7 @@ impl Predictor {
         self.gains = self.ladder.iter().map(each).collect();
     }
 
-    /// The same on pieces of about [`PIECE`] s, spread over the recording, that have `most` samples together; nothing
+    /// The same on pieces of about `PIECE` s, spread over the recording, that have `most` samples together; nothing
     /// where the recording has no more.
     pub fn thinned(&self, most: usize) -> Option<Self> {
         let all: usize = self.segments.iter().map(Range::len).sum();
