@@ -143,6 +143,14 @@ impl Ahead for View<'_> {
         &self.ahead.instants
     }
 
+    fn along(&self) -> Vec<(String, String, Vec<f64>)> {
+        let position = self.family.recording.channel("position");
+        let values = |channel: &missing_physics::Channel| {
+            self.ahead.predictor.counted().iter().map(|k| channel.values[*k]).collect()
+        };
+        position.map(|c| ("position".to_owned(), c.unit.clone(), values(c))).into_iter().collect()
+    }
+
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
         if let Some(trials) = self.family.two_masses(model, term) {
             return trials;

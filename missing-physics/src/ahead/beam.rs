@@ -13,7 +13,7 @@ use super::compare::{Comparison, Difference};
 use super::decision::{Decision, Outcome};
 use super::node::Node;
 use super::screen::{Promise, Screened, screen};
-use super::{Ahead, chance, fit, scales};
+use super::{Ahead, chance, fit, local, scales};
 use crate::discover::{Event, Observer};
 use crate::family::{Fitted, ModelFamily, Role};
 
@@ -28,6 +28,9 @@ pub struct Thresholds {
     pub as_good: (f64, f64),
     /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
     pub complete: f64,
+    /// A model that errs more than this many times what the sensors make at some place, at some time or in isolated
+    /// samples is incomplete, whatever it does on the whole.
+    pub local: f64,
     /// Effects are only named where they remove at least this share of what exceeds the sensors, or leave a complete
     /// model: else the nearest effects are not the cause.
     pub explained: f64,
@@ -46,6 +49,7 @@ impl Default for Thresholds {
             share: 0.02,
             as_good: (6.0, 0.02),
             complete: 1.3,
+            local: 2.0,
             explained: 0.25,
             beam: 3,
             fitted: 5,
@@ -147,7 +151,9 @@ impl Found {
         self.added.truncate(count);
         (self.rungs, self.gains) = (held, gains);
         let top = self.rungs.last().unwrap_or(&self.base);
-        self.complete = top.scale / ahead.budget() <= thresholds.complete;
+        self.places = local::places(ahead, top, thresholds.local);
+        self.complete =
+            top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
     /// Takes all names back where much is left and what was found explains little of it: the nearest effects are not
@@ -172,6 +178,7 @@ impl Found {
             self.base.scale / ahead.budget(),
             top.scale / ahead.budget(),
         ));
+        self.places = local::places(ahead, &self.base, thresholds.local);
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();
@@ -652,7 +659,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             ranking.get(k).map_or(1.0, |ranked| chance::p_value(gain.nats, &ranked.chance))
         };
         let p_values = gains.iter().enumerate().map(|(k, gain)| of(gain, k)).collect();
-        let complete = self.budget(&top) <= self.thresholds.complete;
+        let places = local::places(self.ahead, &top, self.thresholds.local);
+        let complete = self.budget(&top) <= self.thresholds.complete && places.is_empty();
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(last);
         for decision in &mut decisions {
@@ -672,7 +680,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             p_values,
             last_screening,
             complete,
-            places: Vec::new(),
+            places,
             notes: std::mem::take(&mut self.notes),
             decisions,
             untried: self.untried.into_iter().collect(),

@@ -9,6 +9,7 @@ pub mod chance;
 pub mod compare;
 pub mod decision;
 pub mod fit;
+mod local;
 pub mod node;
 mod report;
 mod scales;
@@ -38,6 +39,11 @@ pub trait Ahead: Sync {
 
     /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
     fn instants(&self) -> &[(f64, usize)];
+
+    /// Along what the errors may be uneven, beside time: name, unit and a value for each instant.
+    fn along(&self) -> Vec<(String, String, Vec<f64>)> {
+        Vec::new()
+    }
 
     /// Ways to begin with a term beside a model.
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;

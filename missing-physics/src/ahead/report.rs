@@ -70,6 +70,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
 /// Note of a search that was cut, by Ctrl-C or at the end of its time.
 const STOPPED: &str = "Stopped before the end: what is told is what was found so far.";
 
+/// Largest p-value of a dependence on a coordinate that is told as structure.
+const STRUCTURE: f64 = 0.005;
+
 struct Report<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
     ahead: &'a dyn Ahead,
@@ -104,6 +107,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
         let ladder = self.ladder(&split, &base_fit);
         let summary = self.summary(verdict, &budget, &added, &ladder, &ambiguous, &where_last);
+        let generic_term = (verdict == Verdict::Unexplained)
+            .then(|| self.generic_term(&where_last, &last_fit.residual))
+            .flatten();
         let mut discovery = Discovery {
             verdict,
             summary,
@@ -115,7 +121,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             regimes: where_it_fails::regimes(family, &last_fit.residual),
             regimes_base: where_it_fails::regimes(family, &base_fit.residual),
             ambiguous,
-            generic_term: None,
+            generic_term,
             noise_floor,
             detection_limits: self.limits(),
             decisions: self.found.decisions.iter().map(finite).collect(),
@@ -139,6 +145,14 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     fn notes(&self) -> Vec<String> {
         let cut = self.found.stopped.then(|| STOPPED.to_owned());
         cut.into_iter().chain(self.found.notes.iter().cloned()).collect()
+    }
+
+    /// A term that describes what is left along the coordinate that it depends on most, as text to add.
+    fn generic_term(&self, places: &[crate::report::Where], residual: &[f64]) -> Option<String> {
+        let place = places.iter().find(|place| place.p_value <= STRUCTURE)?;
+        let named = |c: &&crate::family::Coordinate| c.name == place.coordinate;
+        let coordinate = self.family.coordinates().iter().find(named)?;
+        self.family.generic_term(coordinate, &crate::generic::shape(coordinate, residual))
     }
 
     fn names(&self, terms: &[usize]) -> Vec<String> {
@@ -345,7 +359,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             for place in self.found.places.iter().take(1) {
                 let _ = write!(text, " {place}");
             }
-            let likely = places.iter().find(|place| place.p_value <= 0.005);
+            let likely = places.iter().find(|place| place.p_value <= STRUCTURE);
             if let Some(place) = likely.filter(|_| self.found.places.is_empty()) {
                 let _ = write!(text, " It depends most on {}: {}.", place.coordinate, place.note);
             }

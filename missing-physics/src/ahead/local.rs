@@ -1,0 +1,87 @@
+//! Whether what is left lies somewhere: a model may err no more than the sensors make it on the whole and still fail
+//! at one place, at one time, or in a few samples.
+
+use super::Ahead;
+use super::node::Node;
+use crate::quantity::quantity;
+
+/// Bins of equal count along time and each coordinate.
+const BINS: usize = 40;
+/// Fewest errors of a bin.
+const FEWEST: usize = 30;
+/// Errors beyond this many times their robust rms stand alone.
+const ALONE: f64 = 8.0;
+/// Share of the squared error in so few samples from which they are told as faults of the sampling.
+const FAULTS: (f64, f64) = (0.5, 0.01);
+
+/// Places where a model errs more than `factor` times what the sensors make, the worst first, in words.
+pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64) -> Vec<String> {
+    let budget = ahead.budget();
+    let time = ahead.instants().iter().map(|(time, _)| *time).collect();
+    let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
+    along.extend(ahead.along());
+    let mut worst: Vec<(f64, String)> = Vec::new();
+    if let Some(share) = faults(&node.errors) {
+        let text = format!(
+            "{:.0} % of the squared error is in isolated samples: look for faults of the sampling (dropped or late \
+             samples, wrong time stamps).",
+            100.0 * share
+        );
+        worst.push((f64::INFINITY, text));
+    }
+    for (name, unit, values) in &along {
+        let found = largest(values, &node.errors).map(|(rms, at)| (rms / budget, at));
+        if let Some((ratio, at)) = found.filter(|(ratio, _)| *ratio > factor) {
+            let near = quantity(at, unit);
+            let text = format!("Near {name} {near} it errs {ratio:.1} times as much as the sensors make it.");
+            worst.push((ratio, text));
+        }
+    }
+    worst.sort_by(|a, b| b.0.total_cmp(&a.0));
+    worst.into_iter().map(|(_, text)| text).collect()
+}
+
+/// The largest rms of the errors of a bin along `values`, and where it is.
+fn largest(values: &[f64], errors: &[f64]) -> Option<(f64, f64)> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let size = (values.len() / BINS).max(FEWEST);
+    let bins = order.chunks(size).filter(|bin| bin.len() >= FEWEST);
+    let each = bins.map(|bin| {
+        let square: f64 = bin.iter().map(|k| errors[*k] * errors[*k]).sum();
+        ((square / bin.len() as f64).sqrt(), values[bin[bin.len() / 2]])
+    });
+    each.max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Share of the squared error in a few isolated samples, where it is most of it.
+fn faults(errors: &[f64]) -> Option<f64> {
+    let limit = ALONE * super::statistics::spread(errors).max(f64::MIN_POSITIVE);
+    let all: f64 = errors.iter().map(|e| e * e).sum();
+    let alone: Vec<f64> = errors.iter().filter(|e| e.abs() > limit).map(|e| e * e).collect();
+    let share = alone.iter().sum::<f64>() / all.max(f64::MIN_POSITIVE);
+    let few = (alone.len() as f64) < FAULTS.1 * errors.len() as f64;
+    (share > FAULTS.0 && few).then_some(share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bin_with_the_largest_errors_is_found() {
+        let values: Vec<f64> = (0..4000).map(|k| f64::from((k * 37) % 4000)).collect();
+        let errors: Vec<f64> =
+            values.iter().map(|v| if (1000.0..1100.0).contains(v) { 5.0 } else { 1.0 }).collect();
+        let (rms, at) = largest(&values, &errors).unwrap();
+        assert!((rms - 5.0).abs() < 1e-9 && (1000.0..1100.0).contains(&at), "{rms} {at}");
+    }
+
+    #[test]
+    fn a_few_wild_samples_are_faults_and_even_errors_are_not() {
+        let mut errors: Vec<f64> = (0..2000).map(|k| if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
+        assert_eq!(faults(&errors), None);
+        errors[700] = 100.0;
+        assert!(faults(&errors).unwrap() > 0.8);
+    }
+}
