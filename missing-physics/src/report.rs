@@ -3,6 +3,7 @@
 //! Adding a field is fine, renaming one is not. Keys of the maps (`force_rms_N`, `window_rms_m`, ...)
 //! are named by the model family.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -252,12 +253,10 @@ impl Discovery {
     pub(crate) fn predicts_better_than(&self, other: &Self) -> bool {
         let error = |found: &Self| found.budget.map_or(f64::INFINITY, |b| b.last * b.expected);
         let (here, there) = (error(self), error(other));
-        if self.added.len() < other.added.len() {
-            here * CLEARLY <= there
-        } else if self.added.len() > other.added.len() {
-            here <= there * CLEARLY
-        } else {
-            here < there
+        match self.added.len().cmp(&other.added.len()) {
+            Ordering::Less => here * CLEARLY <= there,
+            Ordering::Greater => here <= there * CLEARLY,
+            Ordering::Equal => here < there,
         }
     }
 }

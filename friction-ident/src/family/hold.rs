@@ -32,15 +32,13 @@ pub(super) fn decided(
     recording: &Recording,
     options: &Options,
 ) -> Result<FrictionFamily, PreparationError> {
-    let with = |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
+    let with =
+        |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
     let (sampled, held) = (with(Hold::Sampled)?, with(Hold::ZeroOrder)?);
     let (Some(a), Some(b)) = (likelihood(&sampled), likelihood(&held)) else { return Ok(sampled) };
     let nats = (a - b).abs();
-    let (hold, mut family, other) = if b > a {
-        (Hold::ZeroOrder, held, sampled)
-    } else {
-        (Hold::Sampled, sampled, held)
-    };
+    let (hold, mut family, other) =
+        if b > a { (Hold::ZeroOrder, held, sampled) } else { (Hold::Sampled, sampled, held) };
     let choose = |hold: Hold| Some(HoldChoice { hold, nats });
     family.hold = choose(hold);
     if nats < CLEAR * recording.len() as f64 {
@@ -61,7 +59,8 @@ impl HoldChoice {
             Hold::Sampled => "sampled, changing evenly between samples",
         };
         let why = if by_search {
-            "the simplest model hardly tells, so that the effects were looked for either way".to_owned()
+            "the simplest model hardly tells, so that the effects were looked for either way"
+                .to_owned()
         } else {
             format!("that predicts better by {:.0} nats", self.nats)
         };

@@ -66,7 +66,7 @@ const LOWER: f64 = 0.99;
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
 const NEAR: f64 = 1.25;
 /// Steps of a refit on all of a recording that was searched in part.
-const IN_FULL: usize = 4;
+const IN_FULL: usize = 8;
 /// Promise below which a candidate is not fitted beside the base, nats.
 const PROMISING: f64 = 2.0;
 /// A model is well inside the budget below this multiple of it.
@@ -152,8 +152,7 @@ impl Found {
         (self.rungs, self.gains) = (held, gains);
         let top = self.rungs.last().unwrap_or(&self.base);
         self.places = local::places(ahead, top, thresholds.local);
-        self.complete =
-            top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
+        self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
     /// Takes all names back where much is left and what was found explains little of it: the nearest effects are not
@@ -166,7 +165,11 @@ impl Found {
     ) {
         let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
         let excess = |node: &Node| ((node.scale / ahead.budget()).powi(2) - 1.0).max(0.0);
-        if excess(top) <= (1.0 - thresholds.explained) * excess(&self.base) {
+        // A search that was cut short has not said its last word. What a few wild samples leave is no business of any
+        // effect.
+        let ended = !self.stopped && self.added.len() < thresholds.most;
+        let explains = !ended || excess(top) <= (1.0 - thresholds.explained) * excess(&self.base);
+        if explains && local::faults(&top.errors).is_none() {
             return;
         }
         let names: Vec<&str> =
@@ -352,7 +355,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
-    fn expand(&mut self, base: &Node, from: &Node, size: usize, first: bool) -> (Vec<Node>, Screened) {
+    fn expand(
+        &mut self,
+        base: &Node,
+        from: &Node,
+        size: usize,
+        first: bool,
+    ) -> (Vec<Node>, Screened) {
         let open: Vec<usize> = self
             .candidates
             .iter()
@@ -369,7 +378,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let least = if size == 1 {
             PROMISING
         } else {
-            0.5 * self.thresholds.better.max(self.thresholds.share * self.comparison.compare(base, from).nats)
+            0.5 * self
+                .thresholds
+                .better
+                .max(self.thresholds.share * self.comparison.compare(base, from).nats)
         };
         let most = if size == 1 {
             self.thresholds.fitted
@@ -395,7 +407,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         // Where one of the first leaves no more than the sensors make, only those that promise as much are rivals.
         let (first, others) = starts.split_at(FIRST.min(starts.len()));
         let mut fitted = begin(first);
-        let inside = fitted.iter().flat_map(|(_, node)| node).any(|node| self.budget(node) < INSIDE);
+        let inside =
+            fitted.iter().flat_map(|(_, node)| node).any(|node| self.budget(node) < INSIDE);
         let top = starts.first().map_or(0.0, |promise| promise.gain);
         let rivals: Vec<&Promise> =
             others.iter().copied().filter(|p| !inside || p.gain >= RIVAL * top).collect();
@@ -782,7 +795,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let moved = scales::of(self.family, &node.model);
         let parameters = node.model.parameters(self.family).zip(&moved);
         let own = parameters.skip(base.model.values.len());
-        let mut limited = own.filter(|((_, p), moved)| p.role == Role::Amplitude && moved.is_at_far_limit());
+        let mut limited =
+            own.filter(|((_, p), moved)| p.role == Role::Amplitude && moved.is_at_far_limit());
         limited.next().map(|((term, parameter), _)| term.key(parameter))
     }
 }

@@ -191,7 +191,7 @@ mod tests {
             let start = Plant::model(&[(TONE, &[0.03, 0.995 * truth.min(TONES.1)])]);
             let node = fit(&plant, &plant, start, 2, 20);
             let moved = scales::of(&plant, &node.model);
-            assert_eq!(moved[2].is_at_limit(), limit, "{:?}", node.model);
+            assert_eq!(moved[2].is_at_far_limit(), limit, "{:?}", node.model);
             let expected = truth.min(TONES.1);
             assert!((node.model.values[2] / expected - 1.0).abs() < 2e-3, "{:?}", node.model);
         }

@@ -33,7 +33,9 @@ pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64) -> Vec<String> {
         let found = largest(values, &node.errors).map(|(rms, at)| (rms / budget, at));
         if let Some((ratio, at)) = found.filter(|(ratio, _)| *ratio > factor) {
             let near = quantity(at, unit);
-            let text = format!("Near {name} {near} it errs {ratio:.1} times as much as the sensors make it.");
+            let text = format!(
+                "Near {name} {near} it errs {ratio:.1} times as much as the sensors make it."
+            );
             worst.push((ratio, text));
         }
     }
@@ -55,7 +57,7 @@ fn largest(values: &[f64], errors: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Share of the squared error in a few isolated samples, where it is most of it.
-fn faults(errors: &[f64]) -> Option<f64> {
+pub fn faults(errors: &[f64]) -> Option<f64> {
     let limit = ALONE * super::statistics::spread(errors).max(f64::MIN_POSITIVE);
     let all: f64 = errors.iter().map(|e| e * e).sum();
     let alone: Vec<f64> = errors.iter().filter(|e| e.abs() > limit).map(|e| e * e).collect();

@@ -49,7 +49,8 @@ pub fn discover<F: ModelFamily + ?Sized>(
         let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
         asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
     };
-    let thresholds = settings.thresholds;
+    let mut thresholds = settings.thresholds;
+    thresholds.most = thresholds.most.min(settings.most);
     let part = family.ahead_in_part();
     let searched = part.as_deref().unwrap_or(ahead);
     let search = Search::new(family, searched, thresholds, candidates, &stop, observer);

@@ -80,7 +80,8 @@ impl Moved {
 
     /// Whether it ended at a limit of its search that is not 0.
     pub fn is_at_far_limit(&self) -> bool {
-        let near = |limit: f64| limit != 0.0 && (self.value - limit).abs() <= AT_LIMIT * limit.abs();
+        let near =
+            |limit: f64| limit != 0.0 && (self.value - limit).abs() <= AT_LIMIT * limit.abs();
         near(self.parameter.lower) || near(self.parameter.upper)
     }
 }
@@ -123,11 +124,12 @@ mod tests {
     #[test]
     fn the_end_of_a_search_is_known_and_holds_only_what_pushes_against_it() {
         let (push, tone) = moved(0.0, TONES.0);
-        assert!(push.is_at_limit() && tone.is_at_limit());
+        // An amplitude of 0 is none: no search ended there.
+        assert!(!push.is_at_far_limit() && tone.is_at_far_limit());
         assert!(push.is_held(-1.0) && !push.is_held(1.0));
         assert!(tone.is_held(-1.0) && !tone.is_held(1.0));
         let (push, tone) = moved(0.05, 1.01 * TONES.0);
-        assert!(!push.is_at_limit() && !tone.is_at_limit());
+        assert!(!push.is_at_far_limit() && !tone.is_at_far_limit());
         assert!(!push.is_held(-1.0) && !tone.is_held(-1.0));
         assert!(moved(0.05, TONES.1).1.is_held(1.0));
     }

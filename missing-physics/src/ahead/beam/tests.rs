@@ -120,17 +120,15 @@ fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() 
 }
 
 #[test]
-fn an_effect_whose_search_ended_at_a_limit_is_known() {
-    let plant = Plant::new(6, &[(TONE, &[0.05, 8.04])]);
+fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
     let mut observer = ();
+    let plant = Plant::new(6, &[(WAVE, &[0.05])]);
+    let base = fit::evaluated(&plant, Plant::model(&[]), 0);
     let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &mut observer);
-    let start = Plant::model(&[(TONE, &[0.05, 7.99])]);
-    let node = fit::fit(&plant, &plant, start, 2, 12);
-    assert!(search.at_limit(&node, TONE), "{:?}", node.model);
-    let plant = Plant::new(6, &[(TONE, &[0.05, 5.0])]);
-    let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &mut observer);
-    let node = fit::fit(&plant, &plant, Plant::model(&[(TONE, &[0.05, 5.0])]), 0, 12);
-    assert!(!search.at_limit(&node, TONE) && !search.at_limit(&node, WAVE));
+    for (amplitude, known) in [(10.0, true), (0.05, false), (0.0, false)] {
+        let node = fit::evaluated(&plant, Plant::model(&[(WAVE, &[amplitude])]), 0);
+        assert_eq!(search.at_limit(&base, &node).is_some(), known, "{amplitude}");
+    }
 }
 
 /// Asks to stop when the candidates of a rung have been looked at.
