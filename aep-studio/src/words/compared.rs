@@ -259,10 +259,10 @@ mod tests {
         let record = compared(&found, &Thresholds::default());
         let titles: Vec<&str> = record.iter().map(|group| group.title.as_str()).collect();
         assert_eq!(titles, ["Sets of 1 effect", "Sets of 2 effects"]);
-        let first = ["stribeck", "base model", "+340 ± 12", "> +100", "1.50", "added"];
+        let first = ["stribeck", "base model", "+340 ± 12", "> +40", "1.50", "added"];
         assert_eq!(record[0].rows[0], first);
         assert_eq!(record[0].rows[1][5], "gains too little");
-        assert_eq!(&record[0].rows[2][3..], ["> -100", "1.50", "drift dropped"]);
+        assert_eq!(&record[0].rows[2][3..], ["> -40", "1.50", "drift dropped"]);
         assert_eq!(record[1].rows[0][5], "gains too little: below 2.00 % of all that is explained");
         assert_eq!(record[1].rows[1][5], "not identifiable");
         assert_eq!(comparisons(&found).unwrap(), "5 comparisons of models");
@@ -294,7 +294,7 @@ mod tests {
         let why = |decisions: &[Value]| {
             why_nothing(&discovery(&["stribeck"], decisions), 1, &Thresholds::default()).unwrap()
         };
-        let too_little = decision(2, "stribeck+drift", "stribeck", 40.0, "too_little");
+        let too_little = decision(2, "stribeck+drift", "stribeck", 30.0, "too_little");
         let elsewhere = decision(2, "ripple+drift", "ripple", 90.0, "too_little");
         assert_eq!(
             why(&[
@@ -302,7 +302,7 @@ mod tests {
                 too_little,
                 elsewhere
             ]),
-            "the best refused, drift, gains +40 nats, and 100 are needed"
+            "the best refused, drift, gains +30 nats, and 40 are needed"
         );
         let share = decision(2, "stribeck+drift", "stribeck", 140.0, "too_little");
         let passed = decision(2, "stribeck+ripple", "stribeck", 150.0, "worse");
@@ -314,7 +314,7 @@ mod tests {
         assert!(why(&[gone]).starts_with("drift was taken out again: without it 20 nats are lost"));
         assert_eq!(
             why(&[]),
-            "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats where 100 are needed"
+            "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats where 40 are needed"
         );
         // The rung that was reached needs no excuse.
         assert_eq!(why_nothing(&discovery(&["stribeck"], &[]), 0, &Thresholds::default()), None);
