@@ -111,7 +111,7 @@ fn ahead() -> Discovery {
     let decision = |candidate: &str, outcome: &str, rung: usize| {
         let mut with = last.clone();
         with.push(candidate.to_owned());
-        json!({"rung": rung, "candidate": with, "compared_with": last, "difference": 55.0,
+        json!({"rung": rung, "candidate": with, "compared_with": last, "difference": 35.0,
             "standard_error": 7.0, "budget": 3.1, "outcome": outcome, "reason": "so <it> is"})
     };
     let decisions =
@@ -133,7 +133,7 @@ fn what_decided_stands_on_the_page() {
         "What was compared",
         "2 comparisons of models",
         "Sets of 1 effect",
-        "+55 ± 7.0",
+        "+35 ± 7.0",
         "&gt; +40",
         "gains too little (so &lt;it&gt; is)",
         "another is better",
