@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use aep_core::Scale;
-use missing_physics::ahead::{Ahead, Columns, Trial};
+use missing_physics::ahead::{Ahead, Columns, Trial, trials};
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
@@ -155,15 +155,7 @@ impl Ahead for View<'_> {
         if let Some(trials) = self.family.two_masses(model, term) {
             return trials;
         }
-        let about = &self.family.terms[term];
-        let first = model.values.len();
-        let amplitude = |k: &usize| about.parameters[*k].role == Role::Amplitude;
-        let free: Vec<usize> = (0..about.parameters.len()).filter(amplitude).collect();
-        let trial = |shape: &Vec<f64>| Trial {
-            model: model.with(term, &missing_physics::shapes::assemble(about, shape, &[])),
-            amplitudes: free.iter().map(|k| (first + k, about.parameters[*k].start)).collect(),
-        };
-        self.family.few_shapes(term).iter().map(trial).collect()
+        trials(self.family, model, term, &self.family.few_shapes(term))
     }
 
     fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Columns> {

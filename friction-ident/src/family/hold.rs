@@ -59,7 +59,7 @@ impl HoldChoice {
             Hold::Sampled => "sampled, changing evenly between samples",
         };
         let why = if by_search {
-            "the simplest model hardly tells, so that the effects were looked for either way"
+            "the simplest model hardly tells; the other way is looked at where this one leaves much or needs several effects"
                 .to_owned()
         } else {
             format!("that predicts better by {:.0} nats", self.nats)

@@ -1,13 +1,12 @@
 //! What is known of the noise of encoder and force before any model is fitted.
 
 use missing_physics::Recording;
+use missing_physics::ahead::statistics::spread;
 use missing_physics::basis::{dot, gram, solve};
 use missing_physics::data_check::count_of;
 
 /// Sum of the squares of the binomial coefficients of a fourth difference.
 const FOURTH: f64 = 70.0;
-/// From a median of absolute values to a standard deviation.
-const MEDIAN: f64 = 1.4826;
 /// Samples that a fourth difference looks at must move by this many counts: at rest counts say nothing.
 const MOVING: f64 = 8.0;
 /// Fewest fourth differences.
@@ -39,7 +38,7 @@ impl Noise {
         let position = quick_part(recording, y, u, mass, count);
         let resolution = count_of(u).unwrap_or(0.0) / 12f64.sqrt();
         let at_most = fourth_differences(recording, u, |_| true);
-        let at_most = spread(at_most) / FOURTH.sqrt();
+        let at_most = spread(&at_most) / FOURTH.sqrt();
         let force = of_controller(recording, y, u).map_or(resolution, |n| n.max(resolution));
         Some(Self {
             position: position.max(count / 12f64.sqrt()).max(NONE * (span.1 - span.0)),
@@ -66,7 +65,7 @@ fn quick_part(recording: &Recording, y: &[f64], u: &[f64], mass: f64, count: f64
     }
     let moves = |k: usize| (y[k + 4] - y[k]).abs() > MOVING * count;
     let differences = fourth_differences(recording, &free, moves);
-    if differences.len() < FEWEST { 0.0 } else { spread(differences) / FOURTH.sqrt() }
+    if differences.len() < FEWEST { 0.0 } else { spread(&differences) / FOURTH.sqrt() }
 }
 
 /// Fourth differences of evenly sampled stretches that begin where `wanted` says so.
@@ -90,18 +89,6 @@ fn fourth_differences(
     out
 }
 
-/// Standard deviation of most values, from the median of their sizes.
-fn spread(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    for value in &mut values {
-        *value = value.abs();
-    }
-    let middle = values.len() / 2;
-    MEDIAN * *values.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
 /// Noise of the recorded force against a controller that acts on the control error and its difference.
 fn of_controller(recording: &Recording, y: &[f64], u: &[f64]) -> Option<f64> {
     let reference = &recording.channel("reference")?.values;
@@ -115,7 +102,7 @@ fn of_controller(recording: &Recording, y: &[f64], u: &[f64]) -> Option<f64> {
     let moment: Vec<f64> = columns.iter().map(|c| dot(c, &target)).collect();
     let law = solve(&gram(&columns), &moment, &[0, 1, 2]);
     let left = |i: usize| target[i] - (0..3).map(|j| law[j] * columns[j][i]).sum::<f64>();
-    let noise = spread((0..rows.len()).map(left).collect());
-    let size = spread(target.clone());
+    let noise = spread(&(0..rows.len()).map(left).collect::<Vec<_>>());
+    let size = spread(&target);
     (noise < EXPLAINED * size).then_some(noise)
 }

@@ -60,6 +60,8 @@ impl Default for Thresholds {
 
 /// Steps of a first fit, of a refit elsewhere, and of the last one.
 const STEPS: (usize, usize, usize) = (6, 6, 12);
+/// Steps of the base model at each process noise on the way down.
+const BASE: usize = 8;
 /// Most valleys that are left for a lower one, and by how much lower it must be.
 const RESCANS: usize = 3;
 const LOWER: f64 = 0.99;
@@ -261,15 +263,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// The base model at its best, from a start that need not be near.
     pub fn base(&self, start: Fitted) -> Node {
         let half = self.ahead.settings() / 2;
-        let mut model = start;
-        let mut node = None;
+        let fit = |start: Fitted, setting| fit::fit(self.family, self.ahead, start, setting, BASE);
         // From much process noise to little: the valley narrows.
-        for setting in [half - 1, half.saturating_sub(3), half.saturating_sub(5)] {
-            let fitted = fit::fit(self.family, self.ahead, model, setting, 8);
-            model = fitted.model.clone();
-            node = Some(fitted);
+        let mut node = fit(start, half - 1);
+        for setting in [half.saturating_sub(3), half.saturating_sub(5)] {
+            node = fit(node.model, setting);
         }
-        let node = node.unwrap_or_else(|| fit::evaluated(self.ahead, model, 0));
         fit::settled(self.family, self.ahead, node, STEPS.0)
     }
 

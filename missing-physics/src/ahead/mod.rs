@@ -90,14 +90,18 @@ pub struct Trial {
     pub amplitudes: Vec<(usize, f64)>,
 }
 
-/// The trials that a term's shapes and amplitudes make.
-pub fn trials<F: ModelFamily + ?Sized>(family: &F, model: &Fitted, term: usize) -> Vec<Trial> {
+/// The trials that shapes of a term make with its amplitudes.
+pub fn trials<F: ModelFamily + ?Sized>(
+    family: &F,
+    model: &Fitted,
+    term: usize,
+    shapes: &[Vec<f64>],
+) -> Vec<Trial> {
     let about = &family.terms()[term];
     let first = model.values.len();
     let amplitude = |k: &usize| about.parameters[*k].role == crate::family::Role::Amplitude;
     let free: Vec<usize> = (0..about.parameters.len()).filter(amplitude).collect();
-    family
-        .shapes(term)
+    shapes
         .iter()
         .map(|shape| Trial {
             model: model.with(term, &crate::shapes::assemble(about, shape, &[])),

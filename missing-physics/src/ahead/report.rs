@@ -86,9 +86,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let family = self.family;
         let points = family.target().len();
         let split = Split::new(points, family.blocks());
-        let last = self.found.rungs.last().unwrap_or(&self.found.base);
         let as_fit = |node: &Node| fit::evaluate(family, node.model.clone(), &vec![1.0; points]);
-        let (base_fit, last_fit) = (as_fit(&self.found.base), as_fit(last));
+        let base_fit = as_fit(&self.found.base);
+        let fits: Vec<Fit> = self.found.rungs.iter().map(as_fit).collect();
+        let last_fit = fits.last().unwrap_or(&base_fit);
         let added = self.names(&self.found.added);
         let ambiguous = self.ambiguous();
         let budget = self.budget();
@@ -100,13 +101,13 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             let view = View { residual: &fit.residual, weights: &weights, motion: &motion, seed };
             where_it_fails::coordinates(family, &view)
         };
-        let where_last = places(&last_fit);
+        let where_last = places(last_fit);
         let where_base = if added.is_empty() { where_last.clone() } else { places(&base_fit) };
         let quantity = family.quantity();
         let mut noise_floor = family.noise();
         let floor = noise::floor_of(family, &last_fit.residual);
         noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
-        let ladder = self.ladder(&split, &base_fit);
+        let ladder = self.ladder(&split, &base_fit, &fits);
         let summary = self.summary(verdict, &budget, &added, &ladder, &ambiguous, &where_last);
         let generic_term = (verdict == Verdict::Unexplained)
             .then(|| self.generic_term(&where_last, &last_fit.residual))
@@ -139,7 +140,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             confirmation: None,
             plots: family.plots(&base_fit.model, &last_fit.model),
         };
-        diagnosis::attach(family, &base_fit, &last_fit, self.settings.seed, &mut discovery);
+        diagnosis::attach(family, &base_fit, last_fit, self.settings.seed, &mut discovery);
         discovery
     }
 
@@ -211,14 +212,12 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         sets
     }
 
-    fn ladder(&self, split: &Split, base_fit: &Fit) -> Vec<Rung> {
-        let mut ladder = vec![self.rung(&self.found.base, base_fit, split, None)];
-        for (k, node) in self.found.rungs.iter().enumerate() {
-            let points = self.family.target().len();
-            let fit = fit::evaluate(self.family, node.model.clone(), &vec![1.0; points]);
-            ladder.push(self.rung(node, &fit, split, Some(k)));
-        }
-        ladder
+    /// The rungs; `fits` are those above the base, along the measured motion.
+    fn ladder(&self, split: &Split, base_fit: &Fit, fits: &[Fit]) -> Vec<Rung> {
+        let base = self.rung(&self.found.base, base_fit, split, None);
+        let above = self.found.rungs.iter().zip(fits).enumerate();
+        let above = above.map(|(k, (node, fit))| self.rung(node, fit, split, Some(k)));
+        std::iter::once(base).chain(above).collect()
     }
 
     fn rung(&self, node: &Node, fit: &Fit, split: &Split, k: Option<usize>) -> Rung {

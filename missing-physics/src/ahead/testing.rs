@@ -221,7 +221,7 @@ impl Ahead for Plant {
         &self.instants
     }
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
-        trials(self, model, term)
+        trials(self, model, term, &self.shapes(term))
     }
     fn is_candidate(&self, term: usize) -> bool {
         term != BENT
