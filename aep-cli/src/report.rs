@@ -3,7 +3,7 @@
 use aep_data::Loaded;
 use aep_studio::Source;
 use missing_physics::Discovery;
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::data_check::DataCheck;
 use serde_json::{Value, json};
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use missing_physics::Discovery;
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::data_check::DataCheck;
 
 use crate::html::{escape, section};

@@ -96,6 +96,42 @@ pub(crate) fn ln(x: f64) -> f64 {
     exponent * std::f64::consts::LN_2 + 2.0 * f * sum
 }
 
+/// Added to a number below 2^51 and taken away again it leaves the nearest whole number.
+const ROUNDING: f64 = 6_755_399_441_055_744.0;
+
+/// Ratios of successive terms of the series of sine and cosine, by the square of the angle and without their sign.
+const TERMS: usize = 11;
+const OF_SINE: [f64; TERMS] = ratios(2.0);
+const OF_COSINE: [f64; TERMS] = ratios(1.0);
+
+const fn ratios(mut k: f64) -> [f64; TERMS] {
+    let mut out = [0.0; TERMS];
+    let mut n = 0;
+    while n < TERMS {
+        out[n] = 1.0 / (k * (k + 1.0));
+        k += 2.0;
+        n += 1;
+    }
+    out
+}
+
+/// Sine and cosine of so many turns (below 2^49), to 4e-16: the standard ones are calls.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(crate) fn sin_cos_of_turns(turns: f64) -> (f64, f64) {
+    let nearest = |x: f64| (x + ROUNDING) - ROUNDING;
+    let halves = nearest(2.0 * turns);
+    let odd = halves - 2.0 * nearest(0.5 * halves - 0.25);
+    let sign = 1.0 - 2.0 * odd;
+    // Within a quarter of a turn the series converge fast.
+    let angle = std::f64::consts::TAU * (turns - 0.5 * halves);
+    let square = angle * angle;
+    let series = |ratios: &[f64; TERMS]| {
+        ratios.iter().rev().fold(1.0, |sum, ratio| 1.0 - square * ratio * sum)
+    };
+    (sign * angle * series(&OF_SINE), sign * series(&OF_COSINE))
+}
+
 /// Defines functions whose bodies are compiled for every [`InstructionSet`].
 macro_rules! vectorised {
     ($($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $body:block)*) => {$(
@@ -155,6 +191,17 @@ mod tests {
                 (found - exact).abs() <= 4.5e-16 * exact.abs().max(1.0),
                 "{x}: {found} {exact}"
             );
+        }
+    }
+
+    #[test]
+    fn sine_and_cosine_are_those_of_the_standard_library() {
+        for k in -4000..4000 {
+            let turns = f64::from(k) * 0.001_371;
+            let (sin, cos) = super::sin_cos_of_turns(turns);
+            let part = std::f64::consts::TAU * (turns - turns.round());
+            assert!((sin - part.sin()).abs() < 6e-16, "{turns}: {sin} {}", part.sin());
+            assert!((cos - part.cos()).abs() < 6e-16, "{turns}: {cos} {}", part.cos());
         }
     }
 

@@ -95,8 +95,7 @@ fn one_ahead<F: ModelFamily + ?Sized>(
         let model = model_of(family, rung)?;
         let setting = fit::best_setting(ahead, &model);
         let found = fit::evaluated(ahead, model.clone(), setting);
-        let anew = fit::fit(family, ahead, model, setting, STEPS);
-        let anew = fit::settled(family, ahead, anew, STEPS);
+        let anew = fit::Fitter::new(family, ahead).refit(model, setting, STEPS);
         if let Some((before, before_anew)) = below.filter(|_| rung.added.is_some()) {
             let by = comparison.unfitted(&before, &found);
             let gain = comparison.compare(&before_anew, &anew);

@@ -3,7 +3,7 @@
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use crate::ahead::{self, beam::Thresholds};
+use crate::ahead::{self, Thresholds};
 use crate::climb::Search;
 use crate::family::{Fitted, ModelFamily};
 use crate::fit::{self, Fit};
@@ -172,26 +172,8 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let base = terms(family, &settings.base)?;
     let excluded = terms(family, &settings.exclude)?;
     if let Some(one_ahead) = family.ahead() {
-        let (chosen, sets) = (family.other_reading(), (base.as_slice(), excluded.as_slice()));
-        let Some(other) = chosen else {
-            return Ok(ahead::discover(family, &*one_ahead, settings, sets, observer));
-        };
-        let half = Settings {
-            base: settings.base.clone(),
-            exclude: settings.exclude.clone(),
-            time_limit: settings.time_limit.map(|limit| limit / 2),
-            ..*settings
-        };
-        let first = ahead::discover(family, &*one_ahead, &half, sets, observer);
-        let second = match other.ahead() {
-            Some(ahead) if !first.is_all_there_is() => {
-                ahead::discover(other, &*ahead, &half, sets, observer)
-            }
-            _ => return Ok(first),
-        };
-        let wall_s = first.wall_s + second.wall_s;
-        let better = if second.predicts_better_than(&first) { second } else { first };
-        return Ok(Discovery { wall_s, ..better });
+        let sets = (base.as_slice(), excluded.as_slice());
+        return Ok(ahead::discover(family, &*one_ahead, settings, sets, observer));
     }
     Ok(Search::new(family, settings, &base, excluded, observer).run())
 }

@@ -3,7 +3,6 @@
 //! Adding a field is fine, renaming one is not. Keys of the maps (`force_rms_N`, `window_rms_m`, ...)
 //! are named by the model family.
 
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -236,27 +235,4 @@ pub struct Discovery {
     /// Curves for the page; not part of the JSON contract.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plots: Vec<Plot>,
-}
-
-/// By how much the prediction error of one reading of a recording must be below that of another one with fewer effects.
-const CLEARLY: f64 = 0.98;
-
-impl Discovery {
-    /// Whether at most one effect is missing and nothing is left: another reading of the recording need not be looked
-    /// at. A wrong reading takes an effect of its own to make up for it.
-    pub(crate) fn is_all_there_is(&self) -> bool {
-        self.added.len() <= 1 && self.budget.is_some_and(|budget| budget.complete)
-    }
-
-    /// Whether it predicts better than what was found in another reading of the same recording, or as well with fewer
-    /// effects.
-    pub(crate) fn predicts_better_than(&self, other: &Self) -> bool {
-        let error = |found: &Self| found.budget.map_or(f64::INFINITY, |b| b.last * b.expected);
-        let (here, there) = (error(self), error(other));
-        match self.added.len().cmp(&other.added.len()) {
-            Ordering::Less => here * CLEARLY <= there,
-            Ordering::Greater => here <= there * CLEARLY,
-            Ordering::Equal => here < there,
-        }
-    }
 }

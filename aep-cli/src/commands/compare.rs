@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use friction_ident::Model;
 use friction_ident::family::FrictionFamily;
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::data_check::check;
 use missing_physics::fit::Fit;
 use missing_physics::views::View;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use aep_studio::words;
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::confirm::Confirmed;
 use missing_physics::data_check::check;
 use missing_physics::report::Verdict;

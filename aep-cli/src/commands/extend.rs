@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::data_check::check;
 
 use crate::app::Global;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use friction_ident::family::FrictionFamily;
 use missing_physics::Recording;
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::data_check::check;
 
 use crate::app::Global;

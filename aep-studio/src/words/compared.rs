@@ -1,7 +1,7 @@
 //! The record of what was compared, in plain words.
 
 use missing_physics::Discovery;
-use missing_physics::ahead::beam::Thresholds;
+use missing_physics::ahead::Thresholds;
 use missing_physics::ahead::decision::{Decision, Outcome};
 use missing_physics::quantity::percent;
 use missing_physics::report::Rung;

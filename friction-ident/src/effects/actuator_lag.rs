@@ -95,18 +95,22 @@ fn response(zeta: f64, t: f64) -> (f64, f64) {
     }
 }
 
-/// States: the force, and `tau` times its derivative.
+/// States: the force, `tau` times its derivative, and the response over a step as long as the last one.
 impl Drive for SecondOrder {
     fn states(&self) -> usize {
-        2
+        5
     }
 
     fn start(&self, _p: &[f64], command: f64, state: &mut [f64]) {
-        state.copy_from_slice(&[command, 0.0]);
+        state.copy_from_slice(&[command, 0.0, 0.0, 1.0, 0.0]);
     }
 
     fn advance(&self, p: Parameters<'_>, step: &Advance<'_>, state: &mut [f64], force: &mut [f64]) {
-        let (at, rates) = state.split_at_mut(force.len());
+        let lanes = force.len();
+        let (at, rest) = state.split_at_mut(lanes);
+        let (rates, rest) = rest.split_at_mut(lanes);
+        let (last, rest) = rest.split_at_mut(lanes);
+        let (evens, odds) = rest.split_at_mut(lanes);
         for (i, force) in force.iter_mut().enumerate() {
             let (command, tau, zeta) = (*force, p.get(0)[i], p.get(1)[i]);
             let t = step.duration[i] / tau;
@@ -115,7 +119,11 @@ impl Drive for SecondOrder {
                 continue;
             }
             // Exact for a command that is constant over the step, as is the mean force.
-            let (even, odd) = response(zeta, t);
+            if t != last[i] {
+                last[i] = t;
+                (evens[i], odds[i]) = response(zeta, t);
+            }
+            let (even, odd) = (evens[i], odds[i]);
             let (off, rate) = (at[i] - command, rates[i]);
             let off_then = (even + zeta * odd) * off + odd * rate;
             let rate_then = (even - zeta * odd) * rate - odd * off;

@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use super::{About, Effect, Parameter, Parameters, Sensor, Shown, Slot};
 use crate::axis::Quantity;
+use crate::simd::{sin_cos_of_turns, vectorised};
 
 /// `x + a sin(2 pi x/p) + b cos(2 pi x/p)` is shown.
 ///
@@ -66,11 +67,7 @@ impl Effect for Encoder {
 
 impl Sensor for Encoder {
     fn show(&self, p: Parameters<'_>, position: &mut [f64]) {
-        let [a, b, period] = [p.get(0), p.get(1), p.get(2)];
-        for (i, position) in position.iter_mut().enumerate() {
-            let (sin, cos) = (TAU * (*position / period[i])).sin_cos();
-            *position += a[i] * sin + b[i] * cos;
-        }
+        wave(p.get(0), p.get(1), p.get(2), position);
     }
 
     fn correct(&self, p: &[f64], shown: &mut Shown<'_>) {
@@ -83,6 +80,18 @@ impl Sensor for Encoder {
             shown.position[i] -= part * (a * wave.0 + b * wave.1);
             shown.velocity[i] -= part * w * v * (a * wave.1 - b * wave.0);
             shown.acceleration[i] -= a * sine + b * cosine;
+        }
+    }
+}
+
+vectorised! {
+    /// Adds the error at each position.
+    fn wave(a: &[f64], b: &[f64], period: &[f64], position: &mut [f64]) {
+        let lanes = position.len();
+        let (a, b, period) = (&a[..lanes], &b[..lanes], &period[..lanes]);
+        for i in 0..lanes {
+            let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
+            position[i] += a[i] * sin + b[i] * cos;
         }
     }
 }

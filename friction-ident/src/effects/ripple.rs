@@ -1,9 +1,8 @@
 //! Force ripple: periodic along the stroke, the same for both directions (screw, cogging).
 
-use std::f64::consts::TAU;
-
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::{sin_cos_of_turns, vectorised};
 
 /// Two harmonics of period `l`.
 #[derive(Clone, Copy, Debug)]
@@ -114,15 +113,7 @@ impl Effect for Ripple {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let [a1, b1, a2, b2, period] = [0, 1, 2, 3, 4].map(|k| &p.get(k)[..lanes]);
-        let (position, force) = (&m.position[..lanes], &mut out.force[..lanes]);
-        for i in 0..lanes {
-            let (sin, cos) = (TAU * (position[i] / period[i])).sin_cos();
-            // sin 2a = 2 sin a cos a, cos 2a = 1 - 2 sin^2 a.
-            let second = 2.0 * a2[i] * sin * cos + b2[i] * (1.0 - 2.0 * sin * sin);
-            force[i] += a1[i] * sin + b1[i] * cos + second;
-        }
+        two(p.get(0), p.get(1), p.get(2), p.get(3), p.get(4), m.position, out.force);
     }
 }
 
@@ -132,20 +123,9 @@ impl Effect for Harmonics {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let of = |k: usize| &p.get(k)[..lanes];
-        let a: [&[f64]; COUNT] = std::array::from_fn(of);
-        let b: [&[f64]; COUNT] = std::array::from_fn(|k| of(COUNT + k));
-        let (period, position) = (of(2 * COUNT), &m.position[..lanes]);
-        for (i, force) in out.force.iter_mut().enumerate() {
-            let (sin, cos) = (TAU * (position[i] / period[i])).sin_cos();
-            let (mut sin_k, mut cos_k, mut sum) = (sin, cos, 0.0);
-            for (a, b) in a.iter().zip(&b) {
-                sum += a[i] * sin_k + b[i] * cos_k;
-                (sin_k, cos_k) = (sin_k * cos + cos_k * sin, cos_k * cos - sin_k * sin);
-            }
-            *force += sum;
-        }
+        let a: [&[f64]; COUNT] = std::array::from_fn(|k| p.get(k));
+        let b: [&[f64]; COUNT] = std::array::from_fn(|k| p.get(COUNT + k));
+        six(a, b, p.get(2 * COUNT), m.position, out.force);
     }
 }
 
@@ -165,10 +145,71 @@ impl Effect for Direction {
 
 /// Adds half of the ripple forth and half of that back times `back`.
 fn half(p: Parameters<'_>, position: &[f64], back: f64, out: &mut [f64]) {
-    let [a_p, b_p, a_m, b_m, period] = [0, 1, 2, 3, 4].map(|k| &p.get(k)[..out.len()]);
-    for (i, (out, x)) in out.iter_mut().zip(position).enumerate() {
-        let (sin, cos) = (TAU * (x / period[i])).sin_cos();
-        *out += 0.5 * ((a_p[i] + back * a_m[i]) * sin + (b_p[i] + back * b_m[i]) * cos);
+    either(back, p.get(0), p.get(1), p.get(2), p.get(3), p.get(4), position, out);
+}
+
+vectorised! {
+    /// Adds the fundamental and the second harmonic.
+    fn two(
+        a1: &[f64],
+        b1: &[f64],
+        a2: &[f64],
+        b2: &[f64],
+        period: &[f64],
+        position: &[f64],
+        force: &mut [f64],
+    ) {
+        let lanes = force.len();
+        let (a1, b1, a2, b2) = (&a1[..lanes], &b1[..lanes], &a2[..lanes], &b2[..lanes]);
+        let (period, position) = (&period[..lanes], &position[..lanes]);
+        for i in 0..lanes {
+            let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
+            // sin 2a = 2 sin a cos a, cos 2a = 1 - 2 sin^2 a.
+            let second = 2.0 * a2[i] * sin * cos + b2[i] * (1.0 - 2.0 * sin * sin);
+            force[i] += a1[i] * sin + b1[i] * cos + second;
+        }
+    }
+
+    /// Adds harmonics 1 to `COUNT`.
+    fn six(
+        a: [&[f64]; COUNT],
+        b: [&[f64]; COUNT],
+        period: &[f64],
+        position: &[f64],
+        force: &mut [f64],
+    ) {
+        let lanes = force.len();
+        let (a, b) = (a.map(|a| &a[..lanes]), b.map(|b| &b[..lanes]));
+        let (period, position) = (&period[..lanes], &position[..lanes]);
+        for i in 0..lanes {
+            let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
+            let (mut sin_k, mut cos_k, mut sum) = (sin, cos, 0.0);
+            for k in 0..COUNT {
+                sum += a[k][i] * sin_k + b[k][i] * cos_k;
+                (sin_k, cos_k) = (sin_k * cos + cos_k * sin, cos_k * cos - sin_k * sin);
+            }
+            force[i] += sum;
+        }
+    }
+
+    /// Adds half of the ripple forth and half of that back times `back`.
+    fn either(
+        back: f64,
+        a_p: &[f64],
+        b_p: &[f64],
+        a_m: &[f64],
+        b_m: &[f64],
+        period: &[f64],
+        position: &[f64],
+        out: &mut [f64],
+    ) {
+        let lanes = out.len();
+        let (a_p, b_p, a_m, b_m) = (&a_p[..lanes], &b_p[..lanes], &a_m[..lanes], &b_m[..lanes]);
+        let (period, position) = (&period[..lanes], &position[..lanes]);
+        for i in 0..lanes {
+            let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
+            out[i] += 0.5 * ((a_p[i] + back * a_m[i]) * sin + (b_p[i] + back * b_m[i]) * cos);
+        }
     }
 }
 
@@ -176,6 +217,7 @@ fn half(p: Parameters<'_>, position: &[f64], back: f64, out: &mut [f64]) {
 mod tests {
     use super::super::testing::{Point, along_and_simulated, level, smooth};
     use super::*;
+    use std::f64::consts::TAU;
 
     #[test]
     fn every_harmonic_has_its_period() {

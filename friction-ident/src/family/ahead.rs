@@ -14,6 +14,8 @@ use crate::predictor::{Predictor, Wave};
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
 const MOST_SAMPLES: usize = 12_000;
+/// Samples on which the trials of a term are ranked.
+const RANKED_ON: usize = 2_000;
 /// Starts of a second body that are fitted: its valleys are narrow.
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
@@ -28,6 +30,8 @@ pub(super) struct OneAhead {
     instants: Vec<(f64, usize)>,
     /// The responses that were asked for last.
     responses: Arc<Mutex<Vec<Responses>>>,
+    /// A few pieces of it.
+    part: Option<Arc<Self>>,
 }
 
 /// What periodic disturbances do at a setting.
@@ -51,10 +55,16 @@ impl OneAhead {
     }
 
     fn of(predictor: Predictor, recording: &Recording) -> Self {
+        let part = predictor.thinned(RANKED_ON);
+        let part = part.map(|part| Arc::new(Self::whole(part, recording)));
+        Self { part, ..Self::whole(predictor, recording) }
+    }
+
+    fn whole(predictor: Predictor, recording: &Recording) -> Self {
         let piece = |k: usize| predictor.piece(k);
         let instants =
             predictor.counted().iter().map(|&k| (recording.time()[k], piece(k))).collect();
-        Self { predictor, instants, responses: Arc::default() }
+        Self { predictor, instants, responses: Arc::default(), part: None }
     }
 
     /// Responses to periodic disturbances: they do not depend on the model, so that those of the last settings are
@@ -143,6 +153,17 @@ impl Ahead for View<'_> {
         &self.ahead.instants
     }
 
+    fn faults(&self) -> Option<String> {
+        let share = self.ahead.predictor.stale();
+        (share > 0.0).then(|| {
+            format!(
+                "{:.2} % of the samples repeat the position before them while the axis moves: they were dropped, or the \
+                 recorder reads slower than it writes. They were left out.",
+                100.0 * share
+            )
+        })
+    }
+
     fn along(&self) -> Vec<(String, String, Vec<f64>)> {
         let position = self.family.recording.channel("position");
         let values = |channel: &missing_physics::Channel| {
@@ -170,12 +191,21 @@ impl Ahead for View<'_> {
         Some(self.ahead.responses(setting, wave, periods))
     }
 
+    fn part(&self) -> Option<Box<dyn Ahead + '_>> {
+        let ahead = self.ahead.part.as_deref()?;
+        Some(Box::new(View { family: self.family, ahead }))
+    }
+
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
         self.family.in_flexible_form(model, term)
     }
 
     fn variations(&self, model: &Fitted) -> Vec<Fitted> {
         self.family.other_second_bodies(model)
+    }
+
+    fn relatives(&self, model: &Fitted) -> Vec<Fitted> {
+        self.family.related_second_bodies(model)
     }
 
     fn starts(&self, term: usize) -> usize {

@@ -198,6 +198,36 @@ impl FrictionFamily {
         all
     }
 
+    /// The model with its second body, if that is the last term, behind a coupling in place of a gap, or the other way
+    /// round: a gap that is nearly closed is a coupling.
+    pub(super) fn related_second_bodies(&self, model: &Fitted) -> Vec<Fitted> {
+        let Some(&term) = model.terms.last().filter(|term| self.is_second_body(**term)) else {
+            return Vec::new();
+        };
+        let name = self.terms[term].name.as_str();
+        let of = |parameter: &str| self.value(model, name, parameter).unwrap_or(0.0);
+        let tau = std::f64::consts::TAU;
+        let others: &[&str] = match name {
+            "backlash:two-mass" => &["flexible-coupling:friction"],
+            "flexible-coupling:friction" => &["backlash:two-mass"],
+            _ => &[],
+        };
+        let each = |other: &&str| {
+            let to = self.terms.iter().position(|term| term.name == **other)?;
+            let deviation = self.ahead.as_ref()?.predictor.noise().position;
+            let value = |parameter: &str| match parameter {
+                "f" => (of("k") / of("m_L").max(f64::MIN_POSITIVE)).sqrt() / tau,
+                "k" => of("m_L") * (tau * of("f")).powi(2),
+                "b" => GAPS.1 * deviation,
+                known => of(known),
+            };
+            let values = self.terms[to].parameters.iter();
+            let values: Vec<f64> = values.map(|p| value(&p.name).clamp(p.lower, p.upper)).collect();
+            Some(model.without(self, term).with(to, &values))
+        };
+        others.iter().filter_map(each).collect()
+    }
+
     /// Index of a parameter of a term in a model's values.
     fn place(&self, model: &Fitted, term: &str, parameter: &str) -> Option<usize> {
         let position = model.terms.iter().position(|t| self.terms[*t].name == term)?;

@@ -3,7 +3,7 @@
 //! A command that is held from sample to sample and read as if it were sampled shows half a sample of delay, which
 //! is no physics of the drive.
 
-use missing_physics::ahead::{fit, statistics};
+use missing_physics::ahead::{fit::Fitter, statistics};
 use missing_physics::{Hold, ModelFamily, Recording, discover, search};
 
 use super::ahead::View;
@@ -83,7 +83,7 @@ fn likelihood(family: &FrictionFamily) -> Option<f64> {
     let mut best: Option<f64> = None;
     // From much process noise to little: the valley narrows.
     for setting in (0..ahead.predictor.settings() / 2).rev() {
-        let node = fit::fit(family, &view, model, setting, STEPS);
+        let node = Fitter::new(family, &view).fit(model, setting, STEPS);
         let errors: Vec<f64> =
             node.errors.iter().zip(&moving).filter(|(_, moves)| **moves).map(|(e, _)| *e).collect();
         let scale = statistics::spread(&errors);

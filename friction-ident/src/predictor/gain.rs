@@ -29,6 +29,7 @@ pub(super) fn gains(
     time: &[f64],
     segments: &[Range<usize>],
     counted: &[usize],
+    stale: &[bool],
     (mass, damping): (f64, f64),
     (noise, force): (f64, f64),
 ) -> Gain {
@@ -42,6 +43,10 @@ pub(super) fn gains(
         let mut p = Covariance { xx: noise * noise, xv: 0.0, vv: speed * speed };
         for k in segment.start + 1..segment.end {
             p = p.predicted(time[k] - time[k - 1], (mass, damping), force);
+            if stale[k] {
+                // Nothing was measured.
+                continue;
+            }
             let s = p.xx + noise * noise;
             (position[k], velocity[k]) = (p.xx / s, p.xv / s);
             innovation[k] = s.sqrt();
@@ -101,8 +106,14 @@ mod tests {
     fn without_noise_of_the_force_the_filter_trusts_the_model_more_and_more() {
         let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 1e-3).collect();
         let counted: Vec<usize> = (1..2000).collect();
-        let gain =
-            gains(&time, std::slice::from_ref(&(0..2000)), &counted, (10.0, 100.0), (1e-6, 0.0));
+        let gain = gains(
+            &time,
+            std::slice::from_ref(&(0..2000)),
+            &counted,
+            &[false; 2000],
+            (10.0, 100.0),
+            (1e-6, 0.0),
+        );
         assert!(gain.position[1999] < 0.01 && gain.velocity[1999].abs() < 1.0);
         assert!((gain.expected / 1e-6 - 1.0).abs() < 0.05, "{}", gain.expected);
     }
@@ -112,8 +123,14 @@ mod tests {
         // P. R. Kalata 1984: beta = 2 (2 - alpha) - 4 sqrt(1 - alpha) for any tracking index.
         let time: Vec<f64> = (0..4000).map(|k| f64::from(k) * 1e-3).collect();
         let counted: Vec<usize> = (1..4000).collect();
-        let gain =
-            gains(&time, std::slice::from_ref(&(0..4000)), &counted, (1.0, 0.0), (1e-6, 0.5));
+        let gain = gains(
+            &time,
+            std::slice::from_ref(&(0..4000)),
+            &counted,
+            &[false; 4000],
+            (1.0, 0.0),
+            (1e-6, 0.5),
+        );
         let (alpha, beta) = (gain.position[3999], gain.velocity[3999] * 1e-3);
         let expected = 2.0 * (2.0 - alpha) - 4.0 * (1.0 - alpha).sqrt();
         assert!((beta - expected).abs() < 1e-6, "{beta} {expected}");

@@ -13,6 +13,7 @@
 mod gain;
 mod noise;
 mod response;
+mod stale;
 
 use std::ops::Range;
 
@@ -60,6 +61,8 @@ pub struct Predictor {
     hold: Hold,
     segments: Vec<Range<usize>>,
     noise: Noise,
+    /// Samples that only repeat the one before.
+    stale: Vec<bool>,
     /// Samples that count, in order.
     counted: Vec<usize>,
     /// Process noise of the ladder, N.
@@ -77,7 +80,8 @@ impl Predictor {
     pub fn new(recording: &Recording, mass: f64, damping: f64) -> Option<Self> {
         let force = recording.channel("force")?.values.clone();
         let position = recording.channel("position")?.values.clone();
-        let noise = Noise::of(recording, mass)?;
+        let stale = stale::stale(recording, &position);
+        let noise = Noise::of(recording, &stale, mass)?;
         let rms = (force.iter().map(|f| f * f).sum::<f64>() / force.len() as f64).sqrt();
         let ladder = (0..RUNGS).map(|k| rms * LEAST * FACTOR.powi(k as i32)).collect();
         let stroke = position.iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
@@ -94,10 +98,16 @@ impl Predictor {
             position,
             force,
             noise,
+            stale,
         };
-        predictor.counted = predictor.segments.iter().flat_map(|s| predictor.settled(s)).collect();
+        predictor.counted = predictor.countable();
         predictor.tune(mass, damping);
         (!predictor.counted.is_empty()).then_some(predictor)
+    }
+
+    fn countable(&self) -> Vec<usize> {
+        let settled = self.segments.iter().flat_map(|s| self.settled(s));
+        settled.filter(|k| !self.stale[*k]).collect()
     }
 
     /// Samples of a piece from which on its start no longer matters.
@@ -117,6 +127,7 @@ impl Predictor {
                 &self.time,
                 &self.segments,
                 &self.counted,
+                &self.stale,
                 (mass, damping),
                 (self.noise.position, force),
             )
@@ -149,7 +160,7 @@ impl Predictor {
                 start = end;
             }
         }
-        thinned.counted = thinned.segments.iter().flat_map(|s| thinned.settled(s)).collect();
+        thinned.counted = thinned.countable();
         thinned.tune(self.plant.0, self.plant.1);
         Some(thinned)
     }
@@ -162,6 +173,13 @@ impl Predictor {
     /// What is known of the noise.
     pub fn noise(&self) -> &Noise {
         &self.noise
+    }
+
+    /// Share of the samples that only repeat the one before although the axis moves.
+    pub fn stale(&self) -> f64 {
+        let stale = self.segments.iter().flat_map(|s| &self.stale[s.clone()]);
+        let all: usize = self.segments.iter().map(Range::len).sum();
+        stale.filter(|stale| **stale).count() as f64 / all as f64
     }
 
     /// Indices of the samples that count.

@@ -30,12 +30,12 @@ pub struct Noise {
 
 impl Noise {
     /// The noise of a recording with channels `force` and `position` of a plant of about `mass`.
-    pub(super) fn of(recording: &Recording, mass: f64) -> Option<Self> {
+    pub(super) fn of(recording: &Recording, stale: &[bool], mass: f64) -> Option<Self> {
         let y = &recording.channel("position")?.values;
         let u = &recording.channel("force")?.values;
         let span = y.iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
         let count = count_of(y).unwrap_or(0.0);
-        let position = quick_part(recording, y, u, mass, count);
+        let position = quick_part(recording, (y, u), stale, mass, count);
         let resolution = count_of(u).unwrap_or(0.0) / 12f64.sqrt();
         let at_most = fourth_differences(recording, u, |_| true);
         let at_most = spread(&at_most) / FOURTH.sqrt();
@@ -50,7 +50,13 @@ impl Noise {
 
 /// Noise of the position from its fourth differences, less what the force does to the second ones: exact for
 /// a mass under a held force, and near it for one that changes slowly.
-fn quick_part(recording: &Recording, y: &[f64], u: &[f64], mass: f64, count: f64) -> f64 {
+fn quick_part(
+    recording: &Recording,
+    (y, u): (&[f64], &[f64]),
+    stale: &[bool],
+    mass: f64,
+    count: f64,
+) -> f64 {
     let interval = recording.interval();
     let per_force = interval * interval / (2.0 * mass);
     // Twice the sum of the force's part from the start: its second difference is what the force adds.
@@ -63,7 +69,8 @@ fn quick_part(recording: &Recording, y: &[f64], u: &[f64], mass: f64, count: f64
             free[k] -= moved;
         }
     }
-    let moves = |k: usize| (y[k + 4] - y[k]).abs() > MOVING * count;
+    let fresh = |k: usize| stale[k..k + 5].iter().all(|stale| !stale);
+    let moves = |k: usize| (y[k + 4] - y[k]).abs() > MOVING * count && fresh(k);
     let differences = fourth_differences(recording, &free, moves);
     if differences.len() < FEWEST { 0.0 } else { spread(&differences) / FOURTH.sqrt() }
 }

@@ -4,62 +4,28 @@
 //! another shape of its own before a further effect may be named. Of each size the set stands that predicts best,
 //! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
 
+mod conclude;
+mod shape;
+
 use std::collections::BTreeSet;
-use std::sync::Mutex;
 
 use rayon::prelude::*;
 
 use super::compare::{Comparison, Difference};
 use super::decision::{Decision, Outcome};
+use super::fit::Fitter;
+use super::found::{Found, Ranked};
 use super::node::Node;
 use super::screen::{Promise, Screened, screen};
-use super::{Ahead, chance, fit, local, scales};
-use crate::discover::{Event, Observer};
+use super::thresholds::Thresholds;
+use super::{Ahead, scales};
+use crate::discover::Event;
 use crate::family::{Fitted, ModelFamily, Role};
-
-/// Numbers that steer a search. Each stands in docs/decisions.md with what half and one and a half times of it do.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thresholds {
-    /// Held-out log-likelihood that an effect must gain, nats.
-    pub better: f64,
-    /// Share of all that is explained that an effect must explain.
-    pub share: f64,
-    /// Sets this near to the best of their size are as good: nats, or this share of the gain.
-    pub as_good: (f64, f64),
-    /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
-    pub complete: f64,
-    /// A model that errs more than this many times what the sensors make at some place, at some time or in isolated
-    /// samples is incomplete, whatever it does on the whole.
-    pub local: f64,
-    /// Effects are only named where they remove at least this share of what exceeds the sensors, or leave a complete
-    /// model: else the nearest effects are not the cause.
-    pub explained: f64,
-    /// Sets that are followed side by side.
-    pub beam: usize,
-    /// Candidates that are fitted beside each set.
-    pub fitted: usize,
-    /// Most effects of a set.
-    pub most: usize,
-}
-
-impl Default for Thresholds {
-    fn default() -> Self {
-        Self {
-            better: 40.0,
-            share: 0.02,
-            as_good: (6.0, 0.02),
-            complete: 1.3,
-            local: 2.0,
-            explained: 0.25,
-            beam: 3,
-            fitted: 5,
-            most: 4,
-        }
-    }
-}
 
 /// Steps of a first fit, of a refit elsewhere, and of the last one.
 const STEPS: (usize, usize, usize) = (6, 6, 12);
+/// Steps of a first fit after which the best of several starts is known.
+const TRIED: usize = 3;
 /// Steps of the base model at each process noise on the way down.
 const BASE: usize = 8;
 /// Most valleys that are left for a lower one, and by how much lower it must be.
@@ -67,8 +33,6 @@ const RESCANS: usize = 3;
 const LOWER: f64 = 0.99;
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
 const NEAR: f64 = 1.25;
-/// Steps of a refit on all of a recording that was searched in part.
-const IN_FULL: usize = 8;
 /// Promise below which a candidate is not fitted beside the base, nats.
 const PROMISING: f64 = 2.0;
 /// A model is well inside the budget below this multiple of it.
@@ -76,148 +40,31 @@ const INSIDE: f64 = 1.12;
 /// Candidates that are fitted before it is asked whether others are needed, and the share of their promise from which
 /// another one is a rival.
 const FIRST: usize = 2;
+/// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
+const AGAIN: usize = 8;
 const RIVAL: f64 = 0.1;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 
-/// What a search found.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The base model.
-    pub base: Node,
-    /// The model of every rung above it, the last one with all that was found.
-    pub rungs: Vec<Node>,
-    /// Term that each rung adds.
-    pub added: Vec<usize>,
-    /// What each rung gains over the one before.
-    pub gains: Vec<Difference>,
-    /// What the last model loses without each of the terms added.
-    pub costs: Vec<Difference>,
-    /// Sets of added terms that predict as well as the ones found.
-    pub as_good: Vec<Vec<usize>>,
-    /// Candidates beside the best set of each size.
-    pub ranking: Vec<Ranked>,
-    /// Chance of as large a first-order gain, for each rung.
-    pub p_values: Vec<f64>,
-    /// The candidates beside the last model, to first order.
-    pub last_screening: Vec<Promise>,
-    /// Whether the last model leaves no more than the sensors make.
-    pub complete: bool,
-    /// Where what is left lies, in words, the largest first.
-    pub places: Vec<String>,
-    /// What a user should know besides.
-    pub notes: Vec<String>,
-    /// Every comparison.
-    pub decisions: Vec<Decision>,
-    /// Terms that were not tried because time ran out.
-    pub untried: Vec<usize>,
-    /// Whether the search was cut short.
-    pub stopped: bool,
+/// What searches that share an observer tell it by.
+pub type Tell<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
+
+/// How far a search has come.
+pub struct Climb {
+    base: Node,
+    /// Sets of effects by their number, the best first.
+    nodes: Vec<Vec<Node>>,
+    ranking: Vec<Ranked>,
+    /// Those of the last size that are extended.
+    beam: Vec<Node>,
+    ended: bool,
 }
 
-impl Found {
-    /// Brings what was found on a part to all of the recording: every rung is refitted there and compared anew;
-    /// rungs from the first one on that does not hold are taken back.
-    pub fn confirm<F: ModelFamily + ?Sized>(
-        &mut self,
-        family: &F,
-        ahead: &dyn Ahead,
-        thresholds: &Thresholds,
-    ) {
-        let whole = |node: &Node| {
-            let setting = fit::best_setting(ahead, &node.model);
-            fit::fit(family, ahead, node.model.clone(), setting, IN_FULL)
-        };
-        let comparison = Comparison::new(family, ahead);
-        self.base = whole(&self.base);
-        let mut held: Vec<Node> = Vec::new();
-        let mut gains = Vec::new();
-        for node in &self.rungs {
-            let node = whole(node);
-            let gain = comparison.compare(held.last().unwrap_or(&self.base), &node);
-            if gain.nats <= thresholds.better {
-                break;
-            }
-            gains.push(gain);
-            held.push(node);
-        }
-        let count = held.len();
-        if count < self.rungs.len() {
-            let names = &family.terms()[self.added[count]].name;
-            self.notes.push(format!(
-                "A search on parts of the recording found {names} besides; on all of it that gains too little."
-            ));
-            self.costs.truncate(count);
-            self.as_good.clear();
-        }
-        self.added.truncate(count);
-        (self.rungs, self.gains) = (held, gains);
-        let top = self.rungs.last().unwrap_or(&self.base);
-        self.places = local::places(ahead, top, thresholds.local);
-        self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
-    }
-
-    /// Takes all names back where much is left and what was found explains little of it: the nearest effects are not
-    /// the cause then.
-    pub fn judge<F: ModelFamily + ?Sized>(
-        &mut self,
-        family: &F,
-        ahead: &dyn Ahead,
-        thresholds: &Thresholds,
-    ) {
-        let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
-        let excess = |node: &Node| ((node.scale / ahead.budget()).powi(2) - 1.0).max(0.0);
-        // A search that was cut short has not said its last word. What a few wild samples leave is no business of any
-        // effect.
-        let ended = !self.stopped && self.added.len() < thresholds.most;
-        let explains = !ended || excess(top) <= (1.0 - thresholds.explained) * excess(&self.base);
-        if explains && local::faults(&top.errors).is_none() {
-            return;
-        }
-        let names: Vec<&str> =
-            self.added.iter().map(|term| family.terms()[*term].name.as_str()).collect();
-        self.notes.push(format!(
-            "nearest: {} would lower the prediction error only from {:.2} to {:.2} times what the sensors make: \
-             that is not the cause",
-            names.join(" + "),
-            self.base.scale / ahead.budget(),
-            top.scale / ahead.budget(),
-        ));
-        self.places = local::places(ahead, &self.base, thresholds.local);
-        self.rungs.clear();
-        self.added.clear();
-        self.gains.clear();
-        self.costs.clear();
-        self.as_good.clear();
-        self.p_values.clear();
-    }
-
-    /// Whether a term, in whatever form, is among `terms`.
-    pub fn is_in<F: ModelFamily + ?Sized>(&self, terms: &[usize], term: usize, family: &F) -> bool {
-        let main = |t: usize| family.form_of(t).unwrap_or(t);
-        terms.iter().any(|other| main(*other) == main(term))
-    }
-}
-
-/// Candidates beside one model.
-#[derive(Clone, Debug)]
-pub struct Ranked {
-    /// Term, the model with it, what it gains (nats), the best first.
-    pub rows: Vec<(usize, Fitted, f64)>,
-    /// What any candidate gains by chance, to first order.
-    pub chance: Vec<f64>,
-    /// Number of errors that say as much as independent ones.
-    pub points: f64,
-}
-
-/// An observer that parts of a search on several threads may share.
-struct Watch<'a>(Mutex<&'a mut (dyn Observer + Send)>);
-
-impl Watch<'_> {
-    fn tell(&self, event: &Event<'_>) {
-        if let Ok(mut observer) = self.0.lock() {
-            observer.event(event);
-        }
+impl Climb {
+    /// The best set of the largest size, and its size.
+    pub fn top(&self) -> (&Node, usize) {
+        let size = self.nodes.len() - 1;
+        (self.nodes.last().and_then(|sets| sets.first()).unwrap_or(&self.base), size)
     }
 }
 
@@ -232,8 +79,10 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     decisions: Vec<Decision>,
     notes: Vec<String>,
     stop: &'a (dyn Fn() -> bool + Sync),
-    observer: Watch<'a>,
+    tell: Tell<'a>,
     untried: BTreeSet<usize>,
+    /// Effects that promised most beside the best set of some size.
+    promised: BTreeSet<usize>,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
@@ -244,7 +93,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         thresholds: Thresholds,
         candidates: Vec<usize>,
         stop: &'a (dyn Fn() -> bool + Sync),
-        observer: &'a mut (dyn Observer + Send),
+        tell: Tell<'a>,
     ) -> Self {
         Self {
             family,
@@ -255,102 +104,106 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             decisions: Vec::new(),
             notes: Vec::new(),
             stop,
-            observer: Watch(Mutex::new(observer)),
+            tell,
             untried: BTreeSet::new(),
+            promised: BTreeSet::new(),
         }
+    }
+
+    fn fitter(&self) -> Fitter<'a, F> {
+        Fitter::new(self.family, self.ahead).stopped_by(self.stop)
+    }
+
+    fn refit(&self, model: &Fitted, setting: usize, steps: usize) -> Node {
+        self.fitter().refit(model.clone(), setting, steps)
     }
 
     /// The base model at its best, from a start that need not be near.
     pub fn base(&self, start: Fitted) -> Node {
+        // Without a base model nothing can be said, however little time there is.
+        let fitter = Fitter::new(self.family, self.ahead);
         let half = self.ahead.settings() / 2;
-        let fit = |start: Fitted, setting| fit::fit(self.family, self.ahead, start, setting, BASE);
         // From much process noise to little: the valley narrows.
-        let mut node = fit(start, half - 1);
+        let mut node = fitter.fit(start, half - 1, BASE);
         for setting in [half.saturating_sub(3), half.saturating_sub(5)] {
-            node = fit(node.model, setting);
+            node = fitter.fit(node.model, setting, BASE);
         }
-        fit::settled(self.family, self.ahead, node, STEPS.0)
+        fitter.settled(node, STEPS.0)
     }
 
-    /// Searches from a base model for at most so many effects.
-    pub fn run(mut self, base: Node, most: usize) -> Found {
-        self.thresholds.most = self.thresholds.most.min(most);
-        let (nodes, ranking) = self.climb(&base);
-        let best = self.size(&base, &nodes);
-        let (last, costs) = self.prune(&base, best, &nodes);
+    /// Sets of one effect beside a base model.
+    pub fn begin(&mut self, base: Node) -> Climb {
+        let mut climb = Climb {
+            nodes: vec![vec![base.clone()]],
+            ranking: Vec::new(),
+            beam: vec![base.clone()],
+            base,
+            ended: false,
+        };
+        self.grow(&mut climb);
+        climb
+    }
+
+    /// Goes on to the best set of effects.
+    pub fn finish(mut self, mut climb: Climb) -> Found {
+        while !climb.ended && climb.nodes.len() <= self.thresholds.most {
+            self.grow(&mut climb);
+        }
+        let best = self.size(&climb);
+        let (last, costs) = self.prune(&climb, best);
         let last = self.plainest(last);
-        self.conclude(base, &last, costs, &nodes, ranking)
+        self.conclude(climb, &last, costs)
     }
 
-    /// Sets of effects by their number, the best first.
-    fn climb(&mut self, base: &Node) -> (Vec<Vec<Node>>, Vec<Ranked>) {
-        let mut nodes = vec![vec![base.clone()]];
-        let mut ranking = Vec::new();
-        let mut beam = vec![base.clone()];
-        // Without any effect to add the candidates are still looked at.
-        for size in 1..=self.thresholds.most.max(1) {
-            let mut next: Vec<(Node, Difference)> = Vec::new();
-            for (place, from) in beam.iter().enumerate() {
-                let (children, screened) = self.expand(base, from, size, place == 0);
-                if place == 0 {
-                    ranking.push(self.ranked(from, &children, screened));
-                }
-                for child in children {
-                    let gain = self.comparison.compare(from, &child);
-                    if let Some(parameter) = self.at_limit(base, &child) {
-                        let reason = format!("{parameter} ended at the limit of its search");
-                        self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
-                        if gain.nats > self.thresholds.better && size == 1 {
-                            let effects = self.names(&child).join(" + ");
-                            self.notes.push(format!("{effects} is not named: {reason}"));
-                        }
-                        continue;
-                    }
-                    let outcome = if gain.nats > self.thresholds.better {
-                        Outcome::AsGood
-                    } else {
-                        Outcome::TooLittle
-                    };
-                    self.note(size, &child, from, gain, outcome, "");
-                    let effects = self.names(&child);
-                    self.observer.tell(&Event::Compared {
-                        rung: size,
-                        effects: &effects,
-                        nats: gain.nats,
-                    });
-                    if gain.nats <= self.thresholds.better {
-                        continue;
-                    }
-                    let same =
-                        |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
-                    match next.iter().position(same) {
-                        Some(k) if self.comparison.compare(&next[k].0, &child).nats > 0.0 => {
-                            next[k] = (child, gain);
-                        }
-                        Some(_) => {}
-                        None => next.push((child, gain)),
-                    }
-                }
-                if (self.stop)() {
-                    break;
-                }
+    /// Sets with one effect more.
+    fn grow(&mut self, climb: &mut Climb) {
+        let size = climb.nodes.len();
+        let mut next: Vec<(Node, Difference)> = Vec::new();
+        for (place, from) in climb.beam.iter().enumerate() {
+            let (children, screened) = self.expand(&climb.base, from, size, place == 0);
+            if place == 0 {
+                climb.ranking.push(self.ranked(from, &children, screened));
             }
-            if self.thresholds.most == 0 {
-                break;
-            }
-            let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
-            if ranked.is_empty() {
-                break;
-            }
-            // Inside the budget rivals need no extension.
-            let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
-            beam = ranked.iter().take(width).cloned().collect();
-            nodes.push(ranked);
-            if (self.stop)() {
-                break;
+            for child in children {
+                let gain = self.comparison.compare(from, &child);
+                if let Some(parameter) = self.at_limit(&climb.base, &child) {
+                    let reason = format!("{parameter} ended at the limit of its search");
+                    self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
+                    if gain.nats > self.thresholds.better && size == 1 {
+                        let effects = self.names(&child).join(" + ");
+                        self.notes.push(format!("{effects} is not named: {reason}"));
+                    }
+                    continue;
+                }
+                let gains = gain.nats > self.thresholds.better;
+                let outcome = if gains { Outcome::AsGood } else { Outcome::TooLittle };
+                self.note(size, &child, from, gain, outcome, "");
+                let effects = self.names(&child);
+                let nats = gain.nats;
+                (self.tell)(&Event::Compared { rung: size, effects: &effects, nats });
+                if !gains {
+                    continue;
+                }
+                let same = |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
+                match next.iter().position(same) {
+                    Some(k) if self.comparison.compare(&next[k].0, &child).nats > 0.0 => {
+                        next[k] = (child, gain);
+                    }
+                    Some(_) => {}
+                    None => next.push((child, gain)),
+                }
             }
         }
-        (nodes, ranking)
+        let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
+        // A size that was cut short says nothing: the best of it may not have been fitted.
+        if ranked.is_empty() || (self.stop)() || self.thresholds.most == 0 {
+            climb.ended = true;
+            return;
+        }
+        // Inside the budget rivals need no extension.
+        let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
+        climb.beam = ranked.iter().take(width).cloned().collect();
+        climb.nodes.push(ranked);
     }
 
     /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
@@ -366,13 +219,23 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .iter()
             .copied()
             .filter(|&term| self.family.joins(&from.model, term))
+            .filter(|&term| first || self.promised.contains(&self.main(term)))
             .collect();
         if (self.stop)() {
             self.untried.extend(open);
             return (Vec::new(), Screened::default());
         }
-        self.observer.tell(&Event::Screening { rung: size, candidates: open.len() });
+        (self.tell)(&Event::Screening { rung: size, candidates: open.len() });
         let screened = screen(self.family, self.ahead, from, &open, first);
+        if first {
+            let mut best = BTreeSet::new();
+            for promise in &screened.promises {
+                if best.len() < AGAIN {
+                    best.insert(self.main(promise.term));
+                }
+            }
+            self.promised.append(&mut best);
+        }
         // The first order seldom promises less than half of what a fit gains.
         let least = if size == 1 {
             PROMISING
@@ -416,288 +279,32 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
         let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
         fitted.sort_by(|a, b| a.scale.total_cmp(&b.scale));
-        let keep = if size == 1 { fitted.len() } else { self.thresholds.beam };
+        let keep = if size == 1 { self.thresholds.fitted } else { self.thresholds.beam };
         fitted.truncate(keep);
-        let mut settled: Vec<Node> = fitted
-            .into_par_iter()
-            .map(|node| fit::settled(self.family, self.ahead, node, STEPS.1))
-            .collect();
+        let mut settled: Vec<Node> =
+            fitted.into_par_iter().map(|node| self.fitter().settled(node, STEPS.1)).collect();
         let best = settled.iter().map(|node| node.scale).fold(f64::INFINITY, f64::min);
         settled = settled
             .into_par_iter()
             .map(|node| if node.scale <= NEAR * best { self.rescanned(node) } else { node })
             .collect();
+        let related: Vec<Fitted> = settled
+            .iter()
+            .filter(|node| node.scale <= NEAR * best)
+            .flat_map(|node| self.ahead.relatives(&node.model))
+            .filter(|model| model.terms.last().is_some_and(|term| self.candidates.contains(term)))
+            .collect();
+        let related: Vec<Node> = related
+            .into_par_iter()
+            .map(|start| self.refit(&start, from.setting, STEPS.1))
+            .collect();
+        settled.extend(related);
         settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
         let beam = self.thresholds.beam;
         let shaped = settled.into_par_iter().enumerate();
         let shaped = shaped
             .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
         (shaped.collect(), screened)
-    }
-
-    /// A candidate fitted from the best of its starts; nothing where time ran out.
-    fn begun(&self, promise: &Promise, setting: usize) -> Option<Node> {
-        if (self.stop)() {
-            return None;
-        }
-        let fit =
-            |start: &Fitted| fit::fit(self.family, self.ahead, start.clone(), setting, STEPS.0);
-        let fitted: Vec<Node> = promise.starts.par_iter().map(fit).collect();
-        fitted.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale))
-    }
-
-    /// The node, or one in a lower valley beside it.
-    fn rescanned(&self, mut node: Node) -> Node {
-        for _ in 0..RESCANS {
-            let beside = self.ahead.variations(&node.model);
-            if beside.is_empty() || (self.stop)() {
-                break;
-            }
-            let trials: Vec<(Fitted, usize)> =
-                beside.into_iter().map(|model| (model, node.setting)).collect();
-            let errors = self.ahead.errors(&trials);
-            let nodes = trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(m, s, e));
-            let Some(best) = nodes.min_by(|a, b| a.scale.total_cmp(&b.scale)) else { break };
-            let fitted = fit::fit(self.family, self.ahead, best.model, node.setting, STEPS.1);
-            let fitted = fit::settled(self.family, self.ahead, fitted, STEPS.1);
-            if fitted.scale > LOWER * node.scale {
-                break;
-            }
-            node = fitted;
-        }
-        node
-    }
-
-    /// The node, or the same with effects in their flexible forms where that is clearly better.
-    fn shaped(&self, node: &Node) -> Node {
-        let mut best = node.clone();
-        let mut start = node.model.clone();
-        let mut changed = false;
-        for term in node.effects(self.family) {
-            if let Some(flexible) = self.ahead.flexible(&start, term) {
-                start = flexible;
-                changed = true;
-            }
-        }
-        if changed && !(self.stop)() {
-            let flexible = fit::fit(self.family, self.ahead, start, node.setting, STEPS.1);
-            let flexible = fit::settled(self.family, self.ahead, flexible, STEPS.1);
-            if self.comparison.compare(&best, &flexible).nats > FORM {
-                best = flexible;
-            }
-        }
-        best
-    }
-
-    /// The best set, of the smallest size that is needed.
-    fn size(&mut self, base: &Node, nodes: &[Vec<Node>]) -> Node {
-        let mut best = base.clone();
-        for (size, sets) in nodes.iter().enumerate().skip(1) {
-            let top = &sets[0];
-            let gain = self.comparison.compare(&best, top).nats;
-            let (nats, share) = self.thresholds.as_good;
-            let near = nats.max(share * gain);
-            let simplest = sets
-                .iter()
-                .take(6)
-                .filter(|set| self.comparison.compare(set, top).nats <= near)
-                .min_by_key(|set| self.parameters(set))
-                .unwrap_or(top);
-            let polished = fit::fit(
-                self.family,
-                self.ahead,
-                simplest.model.clone(),
-                simplest.setting,
-                STEPS.2,
-            );
-            let polished = fit::settled(self.family, self.ahead, polished, STEPS.1);
-            let set = if self.comparison.compare(simplest, &polished).nats > 0.0 {
-                polished
-            } else {
-                simplest.clone()
-            };
-            let gain = self.comparison.compare(&best, &set);
-            let all = self.comparison.compare(base, &set).nats.max(1e-9);
-            let taken = gain.nats > self.thresholds.better
-                && (size == 1 || gain.nats / all > self.thresholds.share);
-            let outcome = if taken { Outcome::Added } else { Outcome::TooLittle };
-            let reason = format!("the best set of {size}");
-            let from = best.clone();
-            self.note(size, &set, &from, gain, outcome, &reason);
-            if !taken {
-                break;
-            }
-            best = set;
-        }
-        best
-    }
-
-    /// Takes out what is not needed, and says what each of the rest is worth.
-    fn prune(
-        &mut self,
-        base: &Node,
-        mut best: Node,
-        nodes: &[Vec<Node>],
-    ) -> (Node, Vec<(usize, Difference, Node)>) {
-        loop {
-            let mut costs: Vec<(usize, Difference, Node)> = Vec::new();
-            for term in Self::added(base, &best) {
-                let without = self.without(base, &best, term, nodes);
-                let cost = self.comparison.compare(&without, &best);
-                costs.push((term, cost, without));
-            }
-            costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
-            let idle = costs.len() > 1
-                && costs.last().is_some_and(|cost| cost.1.nats < self.thresholds.better);
-            if !idle {
-                return (best, costs);
-            }
-            if let Some((_, cost, without)) = costs.pop() {
-                let size = costs.len();
-                let from = best.clone();
-                self.note(
-                    size,
-                    &without,
-                    &from,
-                    negative(cost),
-                    Outcome::Dropped,
-                    "as good without",
-                );
-                best = without;
-            }
-        }
-    }
-
-    /// The model without a term, refitted.
-    fn without(&self, base: &Node, node: &Node, term: usize, nodes: &[Vec<Node>]) -> Node {
-        let model = node.model.without(self.family, term);
-        if Self::added(base, node).len() == 1 {
-            return base.clone();
-        }
-        let fitted = fit::fit(self.family, self.ahead, model, node.setting, STEPS.1);
-        let mut best = fit::settled(self.family, self.ahead, fitted, STEPS.1);
-        let key = self.key(&best);
-        for other in nodes.iter().flatten().filter(|other| self.key(other) == key) {
-            if self.comparison.compare(&best, other).nats > 0.0 {
-                best = other.clone();
-            }
-        }
-        best
-    }
-
-    /// The same effects in their main forms, one by one, where those are as good.
-    fn plainest(&mut self, node: Node) -> Node {
-        let mut best = node;
-        for term in best.effects(self.family) {
-            let Some(main) = self.family.form_of(term) else { continue };
-            let without = best.model.without(self.family, term);
-            let start = screen(
-                self.family,
-                self.ahead,
-                &fit::evaluated(self.ahead, without, best.setting),
-                &[main],
-                false,
-            );
-            let Some(start) = start.promises.into_iter().next() else { continue };
-            let Some(plain) = self.begun(&start, best.setting) else { continue };
-            let plain = fit::fit(self.family, self.ahead, plain.model, best.setting, STEPS.2);
-            let plain = fit::settled(self.family, self.ahead, plain, STEPS.1);
-            let loss = self.comparison.compare(&plain, &best);
-            let as_good = loss.nats < self.thresholds.better;
-            let outcome = if as_good { Outcome::Added } else { Outcome::OtherShape };
-            let from = best.clone();
-            self.note(
-                best.effects(self.family).len(),
-                &plain,
-                &from,
-                negative(loss),
-                outcome,
-                "the plain form",
-            );
-            if as_good {
-                best = plain;
-            }
-        }
-        best
-    }
-
-    fn conclude(
-        mut self,
-        base: Node,
-        last: &Node,
-        costs: Vec<(usize, Difference, Node)>,
-        nodes: &[Vec<Node>],
-        ranking: Vec<Ranked>,
-    ) -> Found {
-        // Forms may have changed since the costs were taken.
-        let order: Vec<usize> = costs.iter().map(|(term, ..)| self.main(*term)).collect();
-        let mut added: Vec<usize> = Vec::new();
-        for main in &order {
-            added.extend(last.effects(self.family).iter().filter(|t| self.main(**t) == *main));
-        }
-        let mut rungs = vec![last.clone()];
-        for term in added.iter().skip(1).rev() {
-            let Some(above) = rungs.last() else { break };
-            let below = self.without(&base, above, *term, nodes);
-            rungs.push(below);
-        }
-        if added.is_empty() {
-            rungs.clear();
-        }
-        rungs.reverse();
-        let mut gains = Vec::new();
-        for (k, rung) in rungs.iter().enumerate() {
-            let before = if k == 0 { &base } else { &rungs[k - 1] };
-            gains.push(self.comparison.compare(before, rung));
-        }
-        let as_good = nodes
-            .get(added.len())
-            .into_iter()
-            .flatten()
-            .filter(|set| self.key(set) != self.key(last))
-            .filter(|set| self.comparison.compare(set, last).nats < self.thresholds.better)
-            .map(|set| Self::added(&base, set))
-            .collect();
-        let stopped = (self.stop)();
-        let top = rungs.last().unwrap_or(&base).clone();
-        let open = self.candidates.iter().copied().filter(|&t| self.family.joins(&top.model, t));
-        let open: Vec<usize> = open.collect();
-        let last_screening = if stopped {
-            Vec::new()
-        } else {
-            screen(self.family, self.ahead, &top, &open, false).promises
-        };
-        let of = |gain: &Difference, k: usize| {
-            ranking.get(k).map_or(1.0, |ranked| chance::p_value(gain.nats, &ranked.chance))
-        };
-        let p_values = gains.iter().enumerate().map(|(k, gain)| of(gain, k)).collect();
-        let places = local::places(self.ahead, &top, self.thresholds.local);
-        let complete = self.budget(&top) <= self.thresholds.complete && places.is_empty();
-        let mut decisions = std::mem::take(&mut self.decisions);
-        let names = self.names(last);
-        for decision in &mut decisions {
-            if decision.outcome == Outcome::AsGood {
-                let stands = decision.candidate == names;
-                decision.outcome = if stands { Outcome::Added } else { Outcome::Worse };
-            }
-        }
-        Found {
-            base,
-            rungs,
-            added,
-            gains,
-            costs: costs.into_iter().map(|(_, cost, _)| cost).collect(),
-            as_good,
-            ranking,
-            p_values,
-            last_screening,
-            complete,
-            places,
-            notes: std::mem::take(&mut self.notes),
-            decisions,
-            untried: self.untried.into_iter().collect(),
-            stopped,
-        }
     }
 
     /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.

@@ -26,8 +26,33 @@ pub struct Changed {
     pub positive: bool,
 }
 
+/// The null of a screening.
+#[derive(Clone, Debug, Default)]
+pub struct Chance {
+    /// The largest gain of any trial at each shift of the errors, nats.
+    largest: Vec<f64>,
+    /// Trials that were ranked for each one that was looked at.
+    ranked: f64,
+}
+
+impl Chance {
+    /// From the trials that were looked at, of `tried` that were ranked.
+    pub fn of(left: &[f64], trials: &[Changed], tried: usize) -> Self {
+        let ranked = tried as f64 / trials.len().max(1) as f64;
+        Self { largest: largest(left, trials), ranked: ranked.max(1.0) }
+    }
+
+    /// Chance of a gain at least as large, by the shifts: never below one over their number. The trials that were only
+    /// ranked count as so many independent ones (Bonferroni).
+    pub fn p_value(&self, gain: f64) -> f64 {
+        let as_large = self.largest.iter().filter(|other| **other >= gain).count();
+        let share = (as_large + 1) as f64 / (self.largest.len() + 1) as f64;
+        (share * self.ranked.max(1.0)).min(1.0)
+    }
+}
+
 /// The largest gain of any trial at each shift of the errors, nats.
-pub fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
+fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
     let points = left.len();
     let shortest = ((points as f64 * SHORTEST) as usize).max(1);
     let span = points.saturating_sub(2 * shortest);
@@ -78,12 +103,6 @@ pub fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
     (0..shifts.len()).map(most).filter(|gain| gain.is_finite()).collect()
 }
 
-/// Chance of a gain at least as large, by the shifts; never below one over their number.
-pub fn p_value(gain: f64, largest: &[f64]) -> f64 {
-    let as_large = largest.iter().filter(|other| **other >= gain).count();
-    (as_large + 1) as f64 / (largest.len() + 1) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,20 +122,27 @@ mod tests {
         };
         crate::basis::add_scaled(&mut left, -0.3, &there);
         let trials = [columns(&there), columns(&other)];
-        let chance = largest(&left, &trials);
+        let chance = Chance::of(&left, &trials, 2);
         let gain = |c: &[f64]| 0.5 * dot(c, &left).powi(2) / dot(c, c) - 1.0;
-        assert!(p_value(gain(&there), &chance) <= 2e-3);
-        assert!(p_value(gain(&other), &chance) > 0.01);
+        assert!(chance.p_value(gain(&there)) <= 2e-3);
+        assert!(chance.p_value(gain(&other)) > 0.01);
     }
 
     #[test]
     fn a_p_value_is_never_below_the_resolution_of_the_shifts() {
-        let chance: Vec<f64> = (0..999).map(f64::from).collect();
-        assert_eq!(p_value(f64::INFINITY, &chance), 1e-3);
-        assert_eq!(p_value(998.0, &chance), 2e-3);
-        assert_eq!(p_value(0.0, &chance), 1.0);
+        let chance = Chance { largest: (0..999).map(f64::from).collect(), ranked: 1.0 };
+        assert_eq!(chance.p_value(f64::INFINITY), 1e-3);
+        assert_eq!(chance.p_value(998.0), 2e-3);
+        assert_eq!(chance.p_value(0.0), 1.0);
         // Where nothing could be shifted nothing is known.
-        assert_eq!(p_value(1e9, &[]), 1.0);
+        assert_eq!(Chance::default().p_value(1e9), 1.0);
+    }
+
+    #[test]
+    fn trials_that_were_only_ranked_count() {
+        let chance = Chance { largest: (0..999).map(f64::from).collect(), ranked: 5.0 };
+        assert!((chance.p_value(f64::INFINITY) - 5e-3).abs() < 1e-12);
+        assert_eq!(chance.p_value(500.0), 1.0);
     }
 
     #[test]

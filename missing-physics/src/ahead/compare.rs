@@ -1,7 +1,7 @@
 //! Which of two models predicts better: the one rule that everything else rests on.
 //!
 //! `compare(a, b)` is the held-out log-likelihood of `b` less that of `a`, in nats. Every piece of the recording
-//! is held out in turn; a refit without it is taken to first order. Each model stands at its own most likely
+//! is held out in turn; a refit without it is one step of Gauss and Newton. Each model stands at its own most likely
 //! process noise, both are judged in units of the smaller rms, and the difference is divided by
 //! the number of errors that say as much as an independent one.
 
@@ -9,12 +9,14 @@ use super::fit::Normal;
 use super::node::Node;
 use super::{Ahead, scales, statistics};
 use crate::basis::solve;
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 
 /// Folds of interleaved pieces.
 const FOLDS: usize = 5;
 /// Length of a piece, s. Longer pieces fail for profiles along the stroke: a fold then holds all of a place.
 const PIECE: f64 = 0.5;
+/// Shares of a Gauss-Newton step that are tried in a refit.
+const SHARES: [f64; 2] = [1.0, 0.3];
 /// Length of a block over which the standard error of a difference is taken, s.
 const BLOCK: f64 = 2.0;
 
@@ -73,15 +75,24 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
 
     /// How much better `b` predicts than `a`.
     pub fn compare(&self, a: &Node, b: &Node) -> Difference {
-        let scale = a.scale.min(b.scale);
-        self.difference(&self.held_out(a, scale), &self.held_out(b, scale), b.correlation())
+        self.of_errors(a, b, |node| node.held_out(|| self.held_out(node)))
     }
 
     /// The same of two models that were not fitted to this recording: nothing is held out.
     pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
+        self.of_errors(a, b, |node| &node.errors)
+    }
+
+    /// From the errors that count for each.
+    fn of_errors<'n>(
+        &self,
+        a: &'n Node,
+        b: &'n Node,
+        errors: impl Fn(&'n Node) -> &'n [f64],
+    ) -> Difference {
         let scale = a.scale.min(b.scale);
-        let loss = |node: &Node| -> Vec<f64> {
-            node.errors.iter().map(|e| statistics::loss(e / scale)).collect()
+        let loss = |node: &'n Node| -> Vec<f64> {
+            errors(node).iter().map(|e| statistics::loss(e / scale)).collect()
         };
         self.difference(&loss(a), &loss(b), b.correlation())
     }
@@ -97,14 +108,15 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         Difference { nats, error: square.sqrt() }
     }
 
-    /// Loss of each error in units of `scale`, as predicted by a fit without its fold.
-    fn held_out(&self, node: &Node, scale: f64) -> Vec<f64> {
+    /// Each error as predicted by a model that was refitted without its fold: one Gauss-Newton step, as far as it
+    /// lowers the loss of the other folds.
+    fn held_out(&self, node: &Node) -> Vec<f64> {
         let jacobian = node.jacobian(self.family, self.ahead);
         let moved = scales::of(self.family, &node.model);
         let all: Vec<usize> = (0..moved.len()).collect();
         let parts: Vec<Normal> =
-            (0..FOLDS).map(|fold| self.part(node, jacobian, scale, fold)).collect();
-        let mut loss = vec![0.0; node.errors.len()];
+            (0..FOLDS).map(|fold| self.part(node, jacobian, node.scale, fold)).collect();
+        let mut trials: Vec<(Fitted, usize)> = Vec::new();
         for held in 0..FOLDS {
             let mut matrix = vec![vec![0.0; moved.len()]; moved.len()];
             let mut moment = vec![0.0; moved.len()];
@@ -118,12 +130,32 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
                 row[k] += moved[k].prior();
             }
             let by = solve(&matrix, &moment, &all);
-            for (i, loss) in loss.iter_mut().enumerate().filter(|(i, _)| self.fold[*i] == held) {
-                let change: f64 = jacobian.iter().zip(&by).map(|(column, by)| column[i] * by).sum();
-                *loss = statistics::loss((node.errors[i] + change) / scale);
+            for share in SHARES {
+                let values = moved.iter().zip(&by).map(|(moved, by)| moved.by(share * by));
+                let model = Fitted { terms: node.model.terms.clone(), values: values.collect() };
+                trials.push((model, node.setting));
             }
         }
-        loss
+        let refitted = self.ahead.errors(&trials);
+        let mut errors = node.errors.clone();
+        for (held, steps) in refitted.chunks(SHARES.len()).enumerate() {
+            // The model as it is stands where no step leads down.
+            let seen = |errors: &[f64]| -> f64 {
+                let others = errors.iter().zip(&self.fold).filter(|(_, fold)| **fold != held);
+                others.map(|(e, _)| statistics::loss(e / node.scale)).sum()
+            };
+            let mut best = (seen(&node.errors), &node.errors);
+            for step in steps {
+                let loss = seen(step);
+                if loss < best.0 {
+                    best = (loss, step);
+                }
+            }
+            for (i, e) in errors.iter_mut().enumerate().filter(|(i, _)| self.fold[*i] == held) {
+                *e = best.1[i];
+            }
+        }
+        errors
     }
 
     /// Normal equations of one fold.
@@ -139,14 +171,14 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ahead::fit::fit;
+    use crate::ahead::fit::Fitter;
     use crate::ahead::testing::{BEAT, NOISE, Plant, WAVE};
 
     const WEAK: f64 = 0.01;
 
     fn fitted(plant: &Plant, terms: &[usize]) -> Node {
         let more: Vec<(usize, &[f64])> = terms.iter().map(|term| (*term, &[0.0][..])).collect();
-        fit(plant, plant, Plant::model(&more), 0, 8)
+        Fitter::new(plant, plant).fit(Plant::model(&more), 0, 8)
     }
 
     #[test]

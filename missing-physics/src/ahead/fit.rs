@@ -18,24 +18,70 @@ const PREFERRED: f64 = 0.985;
 /// Cut of squares where settings are compared.
 const SETTING_CUT: f64 = 25.0;
 
-/// Fits a model at a setting in at most `steps` steps.
-pub fn fit<F: ModelFamily + ?Sized>(
-    family: &F,
-    ahead: &dyn Ahead,
-    start: Fitted,
-    setting: usize,
-    steps: usize,
-) -> Node {
-    let mut node = evaluated(ahead, start, setting);
-    let mut damping = 1e-3;
-    for _ in 0..steps {
-        let Some((next, fall)) = step(family, ahead, &node, &mut damping) else { break };
-        node = next;
-        if fall {
-            break;
-        }
+/// Fits models of a family to one recording, as long as nobody asks it to stop.
+pub struct Fitter<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    ahead: &'a dyn Ahead,
+    stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl<F: ModelFamily + ?Sized> Clone for Fitter<'_, F> {
+    fn clone(&self) -> Self {
+        *self
     }
-    node
+}
+
+impl<F: ModelFamily + ?Sized> Copy for Fitter<'_, F> {}
+
+impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
+    /// One that nothing stops.
+    pub fn new(family: &'a F, ahead: &'a dyn Ahead) -> Self {
+        Self { family, ahead, stop: &|| false }
+    }
+
+    /// One that goes no further once `stop` says so.
+    pub fn stopped_by(self, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// Fits a model at a setting in at most `steps` steps.
+    pub fn fit(&self, start: Fitted, setting: usize, steps: usize) -> Node {
+        let mut node = evaluated(self.ahead, start, setting);
+        let mut damping = 1e-3;
+        for _ in 0..steps {
+            if (self.stop)() {
+                break;
+            }
+            let Some((next, fall)) = step(self.family, self.ahead, &node, &mut damping) else {
+                break;
+            };
+            node = next;
+            if fall {
+                break;
+            }
+        }
+        node
+    }
+
+    /// The node at the setting that suits it best, refitted there.
+    pub fn settled(&self, mut node: Node, steps: usize) -> Node {
+        for _ in 0..2 {
+            if (self.stop)() {
+                break;
+            }
+            let setting = best_setting(self.ahead, &node.model);
+            if setting == node.setting {
+                break;
+            }
+            node = self.fit(node.model, setting, steps);
+        }
+        node
+    }
+
+    /// A fit that ends at the setting that suits it best.
+    pub fn refit(&self, start: Fitted, setting: usize, steps: usize) -> Node {
+        self.settled(self.fit(start, setting, steps), steps)
+    }
 }
 
 /// A model as it is.
@@ -118,23 +164,6 @@ pub fn best_setting(ahead: &dyn Ahead, model: &Fitted) -> usize {
     best.0
 }
 
-/// The node at the setting that suits it best, refitted there.
-pub fn settled<F: ModelFamily + ?Sized>(
-    family: &F,
-    ahead: &dyn Ahead,
-    mut node: Node,
-    steps: usize,
-) -> Node {
-    for _ in 0..2 {
-        let setting = best_setting(ahead, &node.model);
-        if setting == node.setting {
-            break;
-        }
-        node = fit(family, ahead, node.model, setting, steps);
-    }
-    node
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,7 +173,7 @@ mod tests {
     fn a_fit_of_a_linear_model_ends_at_its_least_squares() {
         let plant = Plant::new(1, &[(WAVE, &[0.05])]);
         let far = Fitted { terms: vec![0, WAVE], values: vec![0.4, -2.0] };
-        let node = fit(&plant, &plant, far, 0, 10);
+        let node = Fitter::new(&plant, &plant).fit(far, 0, 10);
         // One exact step from anywhere, as the errors are linear.
         let unit = |k: usize| {
             let mut model = node.model.clone();
@@ -166,7 +195,7 @@ mod tests {
     fn a_few_wild_samples_hardly_move_a_fit() {
         let mut plant = Plant::new(2, &[(WAVE, &[0.05])]);
         let size = |plant: &Plant| {
-            let node = fit(plant, plant, Plant::model(&[(WAVE, &[0.0])]), 0, 10);
+            let node = Fitter::new(plant, plant).fit(Plant::model(&[(WAVE, &[0.0])]), 0, 10);
             node.model.values[1]
         };
         let clean = size(&plant);
@@ -180,7 +209,7 @@ mod tests {
         let plant = Plant::new(3, &[(WAVE, &[0.1])]);
         assert_eq!(best_setting(&plant, &Plant::model(&[(WAVE, &[0.1])])), 0);
         let lacking = evaluated(&plant, Plant::model(&[]), 0);
-        let settled = settled(&plant, &plant, lacking.clone(), 6);
+        let settled = Fitter::new(&plant, &plant).settled(lacking.clone(), 6);
         assert!(settled.setting > 0 && settled.scale < 0.9 * lacking.scale);
     }
 
@@ -189,7 +218,7 @@ mod tests {
         for (truth, limit) in [(5.0, false), (1.004 * TONES.1, true)] {
             let plant = Plant::new(4, &[(TONE, &[0.05, truth])]);
             let start = Plant::model(&[(TONE, &[0.03, 0.995 * truth.min(TONES.1)])]);
-            let node = fit(&plant, &plant, start, 2, 20);
+            let node = Fitter::new(&plant, &plant).fit(start, 2, 20);
             let moved = scales::of(&plant, &node.model);
             assert_eq!(moved[2].is_at_far_limit(), limit, "{:?}", node.model);
             let expected = truth.min(TONES.1);

@@ -21,6 +21,7 @@ pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64) -> Vec<String> {
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
     let mut worst: Vec<(f64, String)> = Vec::new();
+    worst.extend(ahead.faults().map(|text| (f64::INFINITY, text)));
     if let Some(share) = faults(&node.errors) {
         let text = format!(
             "{:.0} % of the squared error is in isolated samples: look for faults of the sampling (dropped or late \

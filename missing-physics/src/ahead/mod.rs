@@ -2,23 +2,27 @@
 //!
 //! Everything here rests on the prediction errors of models, each at the process noise that suits it best, in
 //! units of what the sensors alone would leave. [`node`] is a fitted model, [`fit`] fits one, [`compare`] says
-//! which of two is better, [`screen`] which candidates are worth a fit, [`beam`] searches sets of effects.
+//! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects.
 
-pub mod beam;
+mod beam;
 pub mod chance;
 pub mod compare;
 pub mod decision;
 pub mod fit;
+mod found;
 mod local;
 pub mod node;
+mod reading;
 mod report;
 mod scales;
 pub mod screen;
 pub mod statistics;
 #[cfg(test)]
 mod testing;
+mod thresholds;
 
 pub use report::discover;
+pub use thresholds::Thresholds;
 
 use crate::family::{Fitted, ModelFamily};
 
@@ -40,6 +44,11 @@ pub trait Ahead: Sync {
     /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
     fn instants(&self) -> &[(f64, usize)];
 
+    /// What is wrong with the recording itself, in words: with it no model is complete.
+    fn faults(&self) -> Option<String> {
+        None
+    }
+
     /// Along what the errors may be uneven, beside time: name, unit and a value for each instant.
     fn along(&self) -> Vec<(String, String, Vec<f64>)> {
         Vec::new()
@@ -51,6 +60,12 @@ pub trait Ahead: Sync {
     /// Models beside this one in which the term that was added last may lie in a lower valley; few, and none where
     /// its valley is wide.
     fn variations(&self, _model: &Fitted) -> Vec<Fitted> {
+        Vec::new()
+    }
+
+    /// The same model with the term that was added last in the place of a related effect, as near to it as that can be:
+    /// where one of the two fits well the other one begins there.
+    fn relatives(&self, _model: &Fitted) -> Vec<Fitted> {
         Vec::new()
     }
 
@@ -68,6 +83,12 @@ pub trait Ahead: Sync {
     /// much cheaper than errors of the trials: the few best of them are then looked at as they are. Single
     /// precision is enough to choose by.
     fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Columns> {
+        None
+    }
+
+    /// A few pieces of the recording, on which the trials of a term are ranked at a fraction of the cost; nothing where
+    /// it is short. Its settings are those of the whole.
+    fn part(&self) -> Option<Box<dyn Ahead + '_>> {
         None
     }
 

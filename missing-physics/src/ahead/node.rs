@@ -20,6 +20,7 @@ pub struct Node {
     /// Robust rms of the errors.
     pub scale: f64,
     jacobian: OnceLock<Vec<Vec<f64>>>,
+    held_out: OnceLock<Vec<f64>>,
     correlation: OnceLock<f64>,
 }
 
@@ -27,8 +28,15 @@ impl Node {
     /// A model with its errors.
     pub fn new(model: Fitted, setting: usize, errors: Vec<f64>) -> Self {
         let scale = statistics::rms(&errors, CUT).max(f64::MIN_POSITIVE);
-        let (jacobian, correlation) = (OnceLock::new(), OnceLock::new());
-        Self { model, setting, errors, scale, jacobian, correlation }
+        Self {
+            model,
+            setting,
+            errors,
+            scale,
+            jacobian: OnceLock::new(),
+            held_out: OnceLock::new(),
+            correlation: OnceLock::new(),
+        }
     }
 
     /// Derivatives of the errors with respect to the parameters on their scales.
@@ -51,6 +59,11 @@ impl Node {
             }
             columns
         })
+    }
+
+    /// The errors that count where models are compared, found once by `find`.
+    pub fn held_out(&self, find: impl FnOnce() -> Vec<f64>) -> &[f64] {
+        self.held_out.get_or_init(find)
     }
 
     /// How many errors say as much as an independent one.

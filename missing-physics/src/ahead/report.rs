@@ -2,18 +2,20 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use aep_core::Scale;
 
 use super::Ahead;
-use super::beam::{Found, Search};
-use super::chance;
+use super::beam::{Climb, Search, Tell};
 use super::compare::Difference;
 use super::decision::Decision;
+use super::found::{Found, Ranked};
 use super::node::Node;
-use super::scales;
+use super::thresholds::Thresholds;
+use super::{reading, scales};
 use crate::discover::{Event, Observer, Settings};
 use crate::family::{Fitted, ModelFamily};
 use crate::fit::{self, Fit};
@@ -30,42 +32,96 @@ pub fn discover<F: ModelFamily + ?Sized>(
     family: &F,
     ahead: &dyn Ahead,
     settings: &Settings<'_>,
-    (base, excluded): (&[usize], &[usize]),
+    sets: (&[usize], &[usize]),
     observer: &mut (dyn Observer + Send),
 ) -> Discovery {
     let started = Instant::now();
-    let everywhere = vec![1.0; family.target().len()];
-    let start = search::identify(family, base, &everywhere, settings.seed);
-    observer.event(&Event::BaseFitted { evaluations: start.evaluations });
-    let candidates: Vec<usize> = (0..family.terms().len())
-        .filter(|&term| {
-            let main = family.form_of(term).unwrap_or(term);
-            !family.terms()[term].always
-                && ahead.is_candidate(term)
-                && ![term, main].iter().any(|t| excluded.contains(t))
-        })
-        .collect();
-    let stop = || {
-        let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
-        asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
+    let stop = move || is_over(settings, started);
+    let observer = Mutex::new(observer);
+    let tell = |event: &Event<'_>| {
+        if let Ok(mut observer) = observer.lock() {
+            observer.event(event);
+        }
     };
-    let mut thresholds = settings.thresholds;
-    thresholds.most = thresholds.most.min(settings.most);
+    let run = Run { settings, sets, started, stop: &stop, tell: &tell };
     let part = family.ahead_in_part();
-    let searched = part.as_deref().unwrap_or(ahead);
-    let search = Search::new(family, searched, thresholds, candidates, &stop, observer);
-    let base = search.base(start.fit.model);
-    let mut found = search.run(base, settings.most);
-    if part.is_some() {
-        found.confirm(family, ahead, &thresholds);
+    let (search, climb) = run.begun(family, part.as_deref().unwrap_or(ahead));
+    let other = family.other_reading().and_then(|other| Some((other, other.ahead()?)));
+    if let Some((other, other_ahead)) = other.filter(|_| !stop()) {
+        let part = other.ahead_in_part();
+        let (second, second_climb) = run.begun(other, part.as_deref().unwrap_or(&*other_ahead));
+        if reading::is_better(second_climb.top(), climb.top(), settings.thresholds.better) {
+            return run.told(other, &*other_ahead, second.finish(second_climb));
+        }
     }
-    found.judge(family, ahead, &thresholds);
-    observer.event(&Event::Finishing);
-    let mut discovery = Report { family, ahead, settings, found }.discovery();
-    discovery.notes.extend(family.reading());
-    discovery.seed = settings.seed;
-    discovery.wall_s = started.elapsed().as_secs_f64();
-    discovery
+    run.told(family, ahead, search.finish(climb))
+}
+
+/// One discovery, whatever the reading.
+struct Run<'a> {
+    settings: &'a Settings<'a>,
+    /// Terms of the base model and those that are left out.
+    sets: (&'a [usize], &'a [usize]),
+    started: Instant,
+    stop: &'a (dyn Fn() -> bool + Sync),
+    tell: Tell<'a>,
+}
+
+impl Run<'_> {
+    /// A search that has looked at sets of one effect.
+    fn begun<'b, F: ModelFamily + ?Sized>(
+        &'b self,
+        family: &'b F,
+        ahead: &'b dyn Ahead,
+    ) -> (Search<'b, F>, Climb) {
+        let (base, excluded) = self.sets;
+        let everywhere = vec![1.0; family.target().len()];
+        let start = search::identify(family, base, &everywhere, self.settings.seed);
+        (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
+        let candidates: Vec<usize> = (0..family.terms().len())
+            .filter(|&term| {
+                let main = family.form_of(term).unwrap_or(term);
+                !family.terms()[term].always
+                    && ahead.is_candidate(term)
+                    && ![term, main].iter().any(|t| excluded.contains(t))
+            })
+            .collect();
+        let thresholds = self.thresholds();
+        let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
+        let base = search.base(start.fit.model);
+        let climb = search.begin(base);
+        (search, climb)
+    }
+
+    fn thresholds(&self) -> Thresholds {
+        let thresholds = self.settings.thresholds;
+        Thresholds { most: thresholds.most.min(self.settings.most), ..thresholds }
+    }
+
+    /// What was found, on all of the recording, judged and told.
+    fn told<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        ahead: &dyn Ahead,
+        mut found: Found,
+    ) -> Discovery {
+        if family.ahead_in_part().is_some() {
+            found.confirm(family, ahead, &self.thresholds());
+        }
+        found.judge(family, ahead, &self.thresholds());
+        (self.tell)(&Event::Finishing);
+        let mut discovery = Report { family, ahead, settings: self.settings, found }.discovery();
+        discovery.notes.extend(family.reading());
+        discovery.seed = self.settings.seed;
+        discovery.wall_s = self.started.elapsed().as_secs_f64();
+        discovery
+    }
+}
+
+/// Whether a search was asked to end, or its time is up.
+fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
+    let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
+    asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
 }
 
 /// Note of a search that was cut, by Ctrl-C or at the end of its time.
@@ -263,12 +319,12 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     }
 
     fn ranking(&self) -> Vec<Vec<Candidate>> {
-        let row = |ranked: &super::beam::Ranked| -> Vec<Candidate> {
+        let row = |ranked: &Ranked| -> Vec<Candidate> {
             let each = ranked.rows.iter().map(|(term, model, nats)| Candidate {
                 effect: self.family.terms()[*term].name.clone(),
                 gain: share(*nats, ranked.points),
                 // A gain that is no number is none.
-                p_value: if nats.is_nan() { 1.0 } else { chance::p_value(*nats, &ranked.chance) },
+                p_value: if nats.is_nan() { 1.0 } else { ranked.chance.p_value(*nats) },
                 size: self.size(*term, model),
                 nats: Some(*nats).filter(|nats| nats.is_finite()),
             });

@@ -1,8 +1,8 @@
 //! Which candidates are worth a fit: the gain in likelihood to first order, the model's own parameters free.
 
-use super::chance::{self, Changed};
+use super::chance::{Chance, Changed};
 use super::node::Node;
-use super::{Ahead, Trial, statistics};
+use super::{Ahead, Trial, fit, statistics};
 use crate::basis::{Basis, constrained, dot, gram, weighed};
 use crate::family::{Fitted, ModelFamily};
 use rayon::prelude::*;
@@ -14,8 +14,9 @@ const MOST: (f64, f64) = (1.5, 60.0);
 /// An amplitude that the first order puts at 0 starts at this share of the size that it was tried at.
 const LEAST: f64 = 0.03;
 
-/// Trials that are looked at as they are where a cheaper look has ranked all of them.
-const LIKELY: usize = 6;
+/// Trials that are looked at as they are where a cheaper look has ranked all of them: by their linear response, and on
+/// a part of the recording.
+const LIKELY: (usize, usize) = (6, 3);
 
 /// A term and how much it promises.
 #[derive(Clone, Debug)]
@@ -36,7 +37,7 @@ pub struct Screened {
     /// The candidates, the most promising first.
     pub promises: Vec<Promise>,
     /// The largest gain of any candidate where the errors are shifted in time.
-    pub chance: Vec<f64>,
+    pub chance: Chance,
 }
 
 /// The best trial of every candidate. What they gain by chance is only looked at where `with_chance` asks for it.
@@ -47,23 +48,24 @@ pub fn screen<F: ModelFamily + ?Sized>(
     candidates: &[usize],
     with_chance: bool,
 ) -> Screened {
-    let scale = node.weighing(ahead.expected(node.setting));
-    let weight: Vec<f64> =
-        node.errors.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
-    let own: Vec<Vec<f64>> =
-        node.jacobian(family, ahead).iter().map(|column| weighed(column, &weight)).collect();
-    let own = Basis::of(&own);
-    let mut left = weighed(&node.errors, &weight);
-    own.project_out(&mut left);
-    let screening = Screening { node, ahead, scale, weight, own, left };
+    let screening = Screening::new(family, ahead, node);
+    let part = ahead.part();
+    let at_part =
+        part.as_deref().map(|part| fit::evaluated(part, node.model.clone(), node.setting));
+    let part = part.as_deref().zip(at_part.as_ref());
+    let part = part.map(|(part, node)| Screening::new(family, part, node));
     let mut changed = Vec::new();
     let mut promises: Vec<Promise> = Vec::new();
+    let mut tried = 0;
     for &term in candidates {
-        let trials = screening.likely(term, ahead.trials(&node.model, term));
+        let trials = ahead.trials(&node.model, term);
+        tried += trials.len();
+        let trials = screening.likely(family, term, trials, part.as_ref());
         promises.extend(screening.best(family, term, &trials, with_chance.then_some(&mut changed)));
     }
     promises.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let chance = if with_chance { chance::largest(&screening.left, &changed) } else { Vec::new() };
+    let chance =
+        if with_chance { Chance::of(&screening.left, &changed, tried) } else { Chance::default() };
     Screened { promises, chance }
 }
 
@@ -76,27 +78,71 @@ struct Screening<'a> {
     left: Vec<f64>,
 }
 
-impl Screening<'_> {
-    /// The few trials that promise most to first order, where the family can say so cheaply; else all.
-    fn likely(&self, term: usize, trials: Vec<Trial>) -> Vec<Trial> {
-        if trials.len() <= LIKELY {
-            return trials;
-        }
-        let Some(columns) = self.ahead.columns(self.node.setting, term, &trials) else {
+impl<'a> Screening<'a> {
+    fn new<F: ModelFamily + ?Sized>(family: &F, ahead: &'a dyn Ahead, node: &'a Node) -> Self {
+        let scale = node.weighing(ahead.expected(node.setting));
+        let weight: Vec<f64> =
+            node.errors.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
+        let own: Vec<Vec<f64>> =
+            node.jacobian(family, ahead).iter().map(|column| weighed(column, &weight)).collect();
+        let own = Basis::of(&own);
+        let mut left = weighed(&node.errors, &weight);
+        own.project_out(&mut left);
+        Self { node, ahead, scale, weight, own, left }
+    }
+
+    /// The few trials that promise most, where that can be said at less than the cost of looking at all.
+    fn likely<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        term: usize,
+        trials: Vec<Trial>,
+        part: Option<&Self>,
+    ) -> Vec<Trial> {
+        let few = LIKELY.1.max(self.ahead.starts(term));
+        let (gains, few) = if let Some(gains) = self.by_response(term, &trials) {
+            (gains, LIKELY.0)
+        } else if let Some(part) = part.filter(|_| trials.len() > 2 * few) {
+            (part.looked_at(family, &trials).into_iter().map(|(gain, ..)| gain).collect(), few)
+        } else {
             return trials;
         };
+        let mut ranked: Vec<(f64, Trial)> = gains.into_iter().zip(trials).collect();
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranked.into_iter().take(few).map(|(_, trial)| trial).collect()
+    }
+
+    /// Gain of every trial by its linear response, where the family has one and there are many.
+    fn by_response(&self, term: usize, trials: &[Trial]) -> Option<Vec<f64>> {
+        if trials.len() <= LIKELY.0 {
+            return None;
+        }
+        let columns = self.ahead.columns(self.node.setting, term, trials)?;
         let own = single(self.own.columns());
         let (left, weight) = (
             single(std::slice::from_ref(&self.left)).swap_remove(0),
             single(std::slice::from_ref(&self.weight)).swap_remove(0),
         );
-        let mut ranked: Vec<(f64, Trial)> = columns
-            .par_iter()
-            .zip(trials)
-            .map(|(pair, trial)| (first_order(pair, &weight, &own, &left), trial))
-            .collect();
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        ranked.into_iter().take(LIKELY).map(|(_, trial)| trial).collect()
+        Some(columns.par_iter().map(|pair| first_order(pair, &weight, &own, &left)).collect())
+    }
+
+    /// Gain of every trial as it is, the multiples of its sizes that reach it, and its columns.
+    fn looked_at<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        trials: &[Trial],
+    ) -> Vec<(f64, Vec<f64>, Vec<Vec<f64>>)> {
+        let probes: Vec<(Fitted, usize)> =
+            trials.iter().flat_map(probes).map(|model| (model, self.node.setting)).collect();
+        let mut errors = self.ahead.errors(&probes).into_iter();
+        let each = trials.iter().map(|trial| {
+            let count = trial.amplitudes.len().max(1);
+            let columns: Vec<Vec<f64>> =
+                errors.by_ref().take(count).map(|e| self.change(&e)).collect();
+            let (gain, by) = self.gain(family, trial, &columns);
+            (gain, by, columns)
+        });
+        each.collect()
     }
 
     fn best<F: ModelFamily + ?Sized>(
@@ -106,16 +152,10 @@ impl Screening<'_> {
         trials: &[Trial],
         mut changed: Option<&mut Vec<Changed>>,
     ) -> Option<Promise> {
-        let probes: Vec<(Fitted, usize)> =
-            trials.iter().flat_map(probes).map(|model| (model, self.node.setting)).collect();
-        let mut errors = self.ahead.errors(&probes).into_iter();
         let mut best: Option<Promise> = None;
         let mut starts: Vec<(f64, Fitted)> = Vec::new();
-        for trial in trials {
-            let count = trial.amplitudes.len().max(1);
-            let columns: Vec<Vec<f64>> =
-                errors.by_ref().take(count).map(|e| self.change(&e)).collect();
-            let (gain, by) = self.gain(family, trial, &columns);
+        let looked_at = self.looked_at(family, trials);
+        for (trial, (gain, by, columns)) in trials.iter().zip(looked_at) {
             if best.as_ref().is_none_or(|best| gain > best.gain) {
                 let size = trial.amplitudes.first().map(|(_, size)| size);
                 let leverage = size.map(|size| 0.5 * dot(&columns[0], &columns[0]) / (size * size));
@@ -123,7 +163,7 @@ impl Screening<'_> {
             }
             starts.push((gain, started(trial, &by)));
             if let Some(changed) = &mut changed {
-                let positive = count == 1 && positive(family, trial)[0];
+                let positive = columns.len() == 1 && positive(family, trial)[0];
                 changed.push(Changed { matrix: gram(&columns), columns, positive });
             }
         }
@@ -242,14 +282,14 @@ fn started(trial: &Trial, by: &[f64]) -> Fitted {
 mod tests {
     use super::*;
     use crate::ahead::compare::Comparison;
-    use crate::ahead::fit::{evaluated, fit};
+    use crate::ahead::fit::{Fitter, evaluated};
     use crate::ahead::testing::{BEAT, BOTH, PUSH, Plant, TONE, WAVE};
 
     const ALL: [usize; 5] = [WAVE, BEAT, BOTH, TONE, PUSH];
     const WEAK: f64 = 2e-3;
 
     fn base(plant: &Plant) -> Node {
-        fit(plant, plant, Plant::model(&[]), 0, 8)
+        Fitter::new(plant, plant).fit(Plant::model(&[]), 0, 8)
     }
 
     #[test]
@@ -261,7 +301,7 @@ mod tests {
             let from = base(&plant);
             let best = screen(&plant, &plant, &from, &ALL, false).promises.swap_remove(0);
             assert_eq!(best.term, truth.0);
-            let fitted = fit(&plant, &plant, best.starts[0].clone(), 0, 10);
+            let fitted = Fitter::new(&plant, &plant).fit(best.starts[0].clone(), 0, 10);
             let gain = Comparison::new(&plant, &plant).compare(&from, &fitted);
             // The grid of frequencies and the weights far from the truth cost some of it.
             let all = gain.nats * fitted.correlation();
@@ -303,15 +343,16 @@ mod tests {
             .filter(|&seed| {
                 let plant = Plant::new(3000 + seed, &[]);
                 let screened = screen(&plant, &plant, &base(&plant), &all, true);
-                chance::p_value(screened.promises[0].gain, &screened.chance) <= 0.05
+                screened.chance.p_value(screened.promises[0].gain) <= 0.05
             })
             .count();
         assert!(alarms <= 6, "{alarms} of 40");
         let plant = Plant::new(22, &[(BEAT, &[WEAK])]);
         let screened = screen(&plant, &plant, &base(&plant), &ALL, true);
-        let p_value = chance::p_value(screened.promises[0].gain, &screened.chance);
+        let p_value = screened.chance.p_value(screened.promises[0].gain);
         assert!(p_value <= 0.01, "{p_value}");
-        assert!(screen(&plant, &plant, &base(&plant), &ALL, false).chance.is_empty());
+        let without = screen(&plant, &plant, &base(&plant), &ALL, false).chance;
+        assert_eq!(without.p_value(f64::INFINITY), 1.0);
     }
 
     #[test]

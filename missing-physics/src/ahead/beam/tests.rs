@@ -1,9 +1,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
+use crate::ahead::fit;
 use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, TONE, WAVE};
 use crate::report::Verdict;
-use crate::{Settings, discover};
+use crate::{Observer, Settings, discover};
 
 const ALL: [usize; 5] = [WAVE, BEAT, BOTH, TONE, PUSH];
 
@@ -12,10 +13,11 @@ fn never() -> bool {
 }
 
 fn found(plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
-    let mut observer = ();
-    let search = Search::new(plant, plant, thresholds, ALL.to_vec(), &never, &mut observer);
+    let thresholds = Thresholds { most, ..thresholds };
+    let mut search = Search::new(plant, plant, thresholds, ALL.to_vec(), &never, &|_| ());
     let base = search.base(Plant::model(&[]));
-    search.run(base, most)
+    let climb = search.begin(base);
+    search.finish(climb)
 }
 
 /// Without the wave that none can be told from.
@@ -121,10 +123,9 @@ fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() 
 
 #[test]
 fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
-    let mut observer = ();
     let plant = Plant::new(6, &[(WAVE, &[0.05])]);
     let base = fit::evaluated(&plant, Plant::model(&[]), 0);
-    let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &mut observer);
+    let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &|_| ());
     for (amplitude, known) in [(10.0, true), (0.05, false), (0.0, false)] {
         let node = fit::evaluated(&plant, Plant::model(&[(WAVE, &[amplitude])]), 0);
         assert_eq!(search.at_limit(&base, &node).is_some(), known, "{amplitude}");

@@ -1,0 +1,173 @@
+//! The size of the set, what is not needed, and the answer.
+
+use super::super::local;
+use super::*;
+
+impl<F: ModelFamily + ?Sized> Search<'_, F> {
+    /// The best set, of the smallest size that is needed.
+    pub(super) fn size(&mut self, climb: &Climb) -> Node {
+        let base = &climb.base;
+        let mut best = base.clone();
+        for (size, sets) in climb.nodes.iter().enumerate().skip(1) {
+            let top = &sets[0];
+            let gain = self.comparison.compare(&best, top).nats;
+            let (nats, share) = self.thresholds.as_good;
+            let near = nats.max(share * gain);
+            let simplest = sets
+                .iter()
+                .take(6)
+                .filter(|set| self.comparison.compare(set, top).nats <= near)
+                .min_by_key(|set| self.parameters(set))
+                .unwrap_or(top);
+            let polished = self.refit(&simplest.model, simplest.setting, STEPS.2);
+            let set = if self.comparison.compare(simplest, &polished).nats > 0.0 {
+                polished
+            } else {
+                simplest.clone()
+            };
+            let gain = self.comparison.compare(&best, &set);
+            let all = self.comparison.compare(base, &set).nats.max(1e-9);
+            let taken = gain.nats > self.thresholds.better
+                && (size == 1 || gain.nats / all > self.thresholds.share);
+            let outcome = if taken { Outcome::Added } else { Outcome::TooLittle };
+            let reason = format!("the best set of {size}");
+            let from = best.clone();
+            self.note(size, &set, &from, gain, outcome, &reason);
+            if !taken {
+                break;
+            }
+            best = set;
+        }
+        best
+    }
+
+    /// Takes out what is not needed, and says what each of the rest is worth.
+    pub(super) fn prune(
+        &mut self,
+        climb: &Climb,
+        mut best: Node,
+    ) -> (Node, Vec<(usize, Difference, Node)>) {
+        loop {
+            let mut costs: Vec<(usize, Difference, Node)> = Vec::new();
+            for term in Self::added(&climb.base, &best) {
+                let without = self.without(climb, &best, term);
+                let cost = self.comparison.compare(&without, &best);
+                costs.push((term, cost, without));
+            }
+            costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
+            let idle = costs.len() > 1
+                && costs.last().is_some_and(|cost| cost.1.nats < self.thresholds.better);
+            if !idle {
+                return (best, costs);
+            }
+            if let Some((_, cost, without)) = costs.pop() {
+                let size = costs.len();
+                let from = best.clone();
+                self.note(
+                    size,
+                    &without,
+                    &from,
+                    negative(cost),
+                    Outcome::Dropped,
+                    "as good without",
+                );
+                best = without;
+            }
+        }
+    }
+
+    /// The model without a term, refitted.
+    fn without(&self, climb: &Climb, node: &Node, term: usize) -> Node {
+        let model = node.model.without(self.family, term);
+        if Self::added(&climb.base, node).len() == 1 {
+            return climb.base.clone();
+        }
+        let mut best = self.refit(&model, node.setting, STEPS.1);
+        let key = self.key(&best);
+        for other in climb.nodes.iter().flatten().filter(|other| self.key(other) == key) {
+            if self.comparison.compare(&best, other).nats > 0.0 {
+                best = other.clone();
+            }
+        }
+        best
+    }
+
+    pub(super) fn conclude(
+        mut self,
+        climb: Climb,
+        last: &Node,
+        costs: Vec<(usize, Difference, Node)>,
+    ) -> Found {
+        let base = climb.base.clone();
+        // Forms may have changed since the costs were taken.
+        let order: Vec<usize> = costs.iter().map(|(term, ..)| self.main(*term)).collect();
+        let mut added: Vec<usize> = Vec::new();
+        for main in &order {
+            added.extend(last.effects(self.family).iter().filter(|t| self.main(**t) == *main));
+        }
+        let mut rungs = vec![last.clone()];
+        for term in added.iter().skip(1).rev() {
+            let Some(above) = rungs.last() else { break };
+            let below = self.without(&climb, above, *term);
+            rungs.push(below);
+        }
+        if added.is_empty() {
+            rungs.clear();
+        }
+        rungs.reverse();
+        let mut gains = Vec::new();
+        for (k, rung) in rungs.iter().enumerate() {
+            let before = if k == 0 { &base } else { &rungs[k - 1] };
+            gains.push(self.comparison.compare(before, rung));
+        }
+        let as_good = climb
+            .nodes
+            .get(added.len())
+            .into_iter()
+            .flatten()
+            .filter(|set| self.key(set) != self.key(last))
+            .filter(|set| self.comparison.compare(set, last).nats < self.thresholds.better)
+            .map(|set| Self::added(&base, set))
+            .collect();
+        let stopped = (self.stop)();
+        let top = rungs.last().unwrap_or(&base).clone();
+        let open = self.candidates.iter().copied().filter(|&t| self.family.joins(&top.model, t));
+        let open: Vec<usize> = open.collect();
+        let last_screening = if stopped {
+            Vec::new()
+        } else {
+            screen(self.family, self.ahead, &top, &open, false).promises
+        };
+        let of = |gain: &Difference, k: usize| {
+            climb.ranking.get(k).map_or(1.0, |ranked| ranked.chance.p_value(gain.nats))
+        };
+        let p_values = gains.iter().enumerate().map(|(k, gain)| of(gain, k)).collect();
+        let places = local::places(self.ahead, &top, self.thresholds.local);
+        let complete = self.budget(&top) <= self.thresholds.complete && places.is_empty();
+        let mut decisions = std::mem::take(&mut self.decisions);
+        let names = self.names(last);
+        for decision in &mut decisions {
+            if decision.outcome == Outcome::AsGood {
+                let stands = decision.candidate == names;
+                decision.outcome = if stands { Outcome::Added } else { Outcome::Worse };
+            }
+        }
+        Found {
+            base,
+            rungs,
+            added,
+            gains,
+            costs: costs.into_iter().map(|(_, cost, _)| cost).collect(),
+            as_good,
+            ranking: climb.ranking,
+            p_values,
+            last_screening,
+            complete,
+            places,
+            notes: std::mem::take(&mut self.notes),
+            decisions,
+            untried: self.untried.into_iter().collect(),
+            stopped,
+        }
+    }
+}

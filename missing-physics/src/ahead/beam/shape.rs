@@ -1,0 +1,105 @@
+//! From a promise to the best that a set of effects can do: other valleys, other forms.
+
+use rayon::prelude::*;
+
+use crate::family::{Fitted, ModelFamily};
+
+use super::super::{
+    fit,
+    node::Node,
+    screen::{Promise, screen},
+};
+use super::*;
+
+impl<F: ModelFamily + ?Sized> Search<'_, F> {
+    /// A candidate fitted from the best of its starts; nothing where time ran out.
+    pub(super) fn begun(&self, promise: &Promise, setting: usize) -> Option<Node> {
+        if (self.stop)() {
+            return None;
+        }
+        let fit = |start: Fitted, steps| self.fitter().fit(start, setting, steps);
+        if let [start] = &promise.starts[..] {
+            return Some(fit(start.clone(), STEPS.0));
+        }
+        let starts = promise.starts.par_iter();
+        let tried: Vec<Node> = starts.map(|start| fit(start.clone(), TRIED)).collect();
+        let best = tried.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale))?;
+        Some(fit(best.model, STEPS.0 - TRIED))
+    }
+
+    /// The node, or one in a lower valley beside it.
+    pub(super) fn rescanned(&self, mut node: Node) -> Node {
+        for _ in 0..RESCANS {
+            let beside = self.ahead.variations(&node.model);
+            if beside.is_empty() || (self.stop)() {
+                break;
+            }
+            let trials: Vec<(Fitted, usize)> =
+                beside.into_iter().map(|model| (model, node.setting)).collect();
+            let errors = self.ahead.errors(&trials);
+            let nodes = trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(m, s, e));
+            let Some(best) = nodes.min_by(|a, b| a.scale.total_cmp(&b.scale)) else { break };
+            let fitted = self.refit(&best.model, node.setting, STEPS.1);
+            if fitted.scale > LOWER * node.scale {
+                break;
+            }
+            node = fitted;
+        }
+        node
+    }
+
+    /// The node, or the same with effects in their flexible forms where that is clearly better.
+    pub(super) fn shaped(&self, node: &Node) -> Node {
+        let mut best = node.clone();
+        let mut start = node.model.clone();
+        let mut changed = false;
+        for term in node.effects(self.family) {
+            if let Some(flexible) = self.ahead.flexible(&start, term) {
+                start = flexible;
+                changed = true;
+            }
+        }
+        if changed && !(self.stop)() {
+            let flexible = self.refit(&start, node.setting, STEPS.1);
+            if self.comparison.compare(&best, &flexible).nats > FORM {
+                best = flexible;
+            }
+        }
+        best
+    }
+
+    /// The same effects in their main forms, one by one, where those are as good.
+    pub(super) fn plainest(&mut self, node: Node) -> Node {
+        let mut best = node;
+        for term in best.effects(self.family) {
+            let Some(main) = self.family.form_of(term) else { continue };
+            let without = best.model.without(self.family, term);
+            let start = screen(
+                self.family,
+                self.ahead,
+                &fit::evaluated(self.ahead, without, best.setting),
+                &[main],
+                false,
+            );
+            let Some(start) = start.promises.into_iter().next() else { continue };
+            let Some(plain) = self.begun(&start, best.setting) else { continue };
+            let plain = self.refit(&plain.model, best.setting, STEPS.2);
+            let loss = self.comparison.compare(&plain, &best);
+            let as_good = loss.nats < self.thresholds.better;
+            let outcome = if as_good { Outcome::Added } else { Outcome::OtherShape };
+            let from = best.clone();
+            self.note(
+                best.effects(self.family).len(),
+                &plain,
+                &from,
+                negative(loss),
+                outcome,
+                "the plain form",
+            );
+            if as_good {
+                best = plain;
+            }
+        }
+        best
+    }
+}

@@ -1,0 +1,42 @@
+//! The numbers that steer a search.
+
+/// Numbers that steer a search. Each stands in docs/decisions.md with what half and one and a half times of it do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thresholds {
+    /// Held-out log-likelihood that an effect must gain, nats.
+    pub better: f64,
+    /// Share of all that is explained that an effect must explain.
+    pub share: f64,
+    /// Sets this near to the best of their size are as good: nats, or this share of the gain.
+    pub as_good: (f64, f64),
+    /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
+    pub complete: f64,
+    /// A model that errs more than this many times what the sensors make at some place, at some time or in isolated
+    /// samples is incomplete, whatever it does on the whole.
+    pub local: f64,
+    /// Effects are only named where they remove at least this share of what exceeds the sensors, or leave a complete
+    /// model: else the nearest effects are not the cause.
+    pub explained: f64,
+    /// Sets that are followed side by side.
+    pub beam: usize,
+    /// Candidates that are fitted beside each set.
+    pub fitted: usize,
+    /// Most effects of a set.
+    pub most: usize,
+}
+
+impl Default for Thresholds {
+    fn default() -> Self {
+        Self {
+            better: 40.0,
+            share: 0.02,
+            as_good: (6.0, 0.02),
+            complete: 1.3,
+            local: 2.0,
+            explained: 0.4,
+            beam: 3,
+            fitted: 5,
+            most: 4,
+        }
+    }
+}
