@@ -199,8 +199,9 @@ pub trait ModelFamily: Sync {
     }
 
     /// The same recording read in the other way that its data hardly tell from this one (an input held between samples
-    /// or sampled); nothing where they do, or where it was stated.
-    fn other_reading(&self) -> Option<&Self> {
+    /// or sampled), and by how many nats the simplest model prefers this one; nothing where the data do tell, or where it
+    /// was stated.
+    fn other_reading(&self) -> Option<(&Self, f64)> {
         None
     }
 

@@ -208,6 +208,10 @@ impl Ahead for View<'_> {
         self.family.related_second_bodies(model)
     }
 
+    fn vanishes(&self, model: &Fitted) -> Option<String> {
+        self.family.closed_gap(model)
+    }
+
     fn starts(&self, term: usize) -> usize {
         if self.family.is_second_body(term) { SECOND_BODIES } else { 1 }
     }

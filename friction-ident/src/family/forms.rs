@@ -39,6 +39,8 @@ const BEHIND_GAP: [f64; 3] = [0.35, 0.55, 0.75];
 const FREQUENCIES: (usize, f64, f64) = (10, 3.0, 0.25);
 /// Trial gaps of a backlash, from this many standard deviations of the position to a share of the stroke.
 const GAPS: (usize, f64, f64) = (16, 4.0, 0.01);
+/// A gap below this multiple of the least one is none.
+const CLOSED: f64 = 1.05;
 /// Frequency of the contact at the end of a gap, Hz, and damping of contact and coupling.
 const CONTACT: f64 = 150.0;
 const DAMPING: (f64, f64) = (0.1, 0.05);
@@ -226,6 +228,17 @@ impl FrictionFamily {
             Some(model.without(self, term).with(to, &values))
         };
         others.iter().filter_map(each).collect()
+    }
+
+    /// Whether a gap was fitted with next to no width, in words: it is a coupling then.
+    pub(super) fn closed_gap(&self, model: &Fitted) -> Option<String> {
+        let gaps = model.terms.iter().map(|term| self.terms[*term].name.as_str());
+        gaps.filter(|name| name.starts_with("backlash")).find_map(|name| {
+            let place = self.place(model, name, "b")?;
+            let (term, parameter) = model.parameters(self).nth(place)?;
+            let closed = model.values[place] <= CLOSED * parameter.lower;
+            closed.then(|| format!("{} is as narrow as it may be", term.key(parameter)))
+        })
     }
 
     /// Index of a parameter of a term in a model's values.

@@ -46,6 +46,8 @@ pub(super) fn decided(
         let mut other = other;
         let second = if hold == Hold::Sampled { Hold::ZeroOrder } else { Hold::Sampled };
         other.hold = choose(second);
+        other.by_search = true;
+        family.by_search = true;
         family.other_hold = Some(Box::new(other));
     }
     Ok(family)
@@ -53,13 +55,13 @@ pub(super) fn decided(
 
 impl HoldChoice {
     /// What was decided, in words.
-    pub(super) fn words(&self, by_search: bool) -> String {
+    pub(super) fn words(self, by_search: bool) -> String {
         let how = match self.hold {
             Hold::ZeroOrder => "held from one sample to the next",
             Hold::Sampled => "sampled, changing evenly between samples",
         };
         let why = if by_search {
-            "the simplest model hardly tells; the other way is looked at where this one leaves much or needs several effects"
+            "the simplest model hardly tells, the best model with one effect predicts better so"
                 .to_owned()
         } else {
             format!("that predicts better by {:.0} nats", self.nats)

@@ -29,7 +29,6 @@ pub struct Limits {
     stroke: f64,
     rest_speed: f64,
     position_noise: f64,
-    bandwidth: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -60,7 +59,6 @@ impl Limits {
             stroke: (stroke.1 - stroke.0).max(f64::MIN_POSITIVE),
             rest_speed: prepared.rest_speed,
             position_noise: prepared.position_noise,
-            bandwidth: prepared.bandwidth,
         }
     }
 
@@ -159,8 +157,9 @@ impl Limits {
                 0.05 * self.force.rms / (0.1 * self.stroke),
                 self.force.rms / self.position_noise.max(1e-6 * self.stroke),
             ),
-            // A resonance above the bandwidth is only a little more mass.
-            Quantity::Frequency => (low, self.bandwidth),
+            // A resonance that the sampling cannot follow is only a little more mass; nearer to half of the sampling
+            // frequency it would explain how the counts of an even motion beat with the samples.
+            Quantity::Frequency => (low, 0.25 / self.interval),
             // What settles within two samples cannot be told from what is there at once.
             Quantity::Time => (2.0 * self.interval, f64::INFINITY),
             _ => (low, high),

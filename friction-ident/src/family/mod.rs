@@ -77,6 +77,8 @@ pub struct FrictionFamily {
     stroke: (f64, f64),
     hold: Option<HoldChoice>,
     other_hold: Option<Box<Self>>,
+    /// Whether the search decides about the hold.
+    by_search: bool,
     ahead: Option<ahead::OneAhead>,
     thinned: Option<ahead::OneAhead>,
     top_speed: f64,
@@ -133,6 +135,7 @@ impl FrictionFamily {
             stroke,
             hold: None,
             other_hold: None,
+            by_search: false,
             ahead: None,
             thinned: None,
             top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
@@ -395,12 +398,12 @@ impl ModelFamily for FrictionFamily {
         Some(Box::new(ahead::View { family: self, ahead }))
     }
 
-    fn other_reading(&self) -> Option<&Self> {
-        self.other_hold.as_deref()
+    fn other_reading(&self) -> Option<(&Self, f64)> {
+        Some((self.other_hold.as_deref()?, self.hold?.nats))
     }
 
     fn reading(&self) -> Option<String> {
-        self.hold.map(|choice| choice.words(self.other_hold.is_some()))
+        self.hold.map(|choice| choice.words(self.by_search))
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {

@@ -3,13 +3,13 @@
 use missing_physics::Recording;
 use missing_physics::data_check::count_of;
 
-/// The axis moves where the samples around one lie this many counts apart.
+/// The axis moves where the samples around one lie this many counts apart, and the two before it half of that.
 const MOVING: f64 = 8.0;
 /// The least of that as a share of the stroke, for positions without counts.
 const LEAST: f64 = 1e-6;
-/// Fewest repeated samples, and how many of them there must be for each that differs by one count: noise makes both
-/// alike.
-const FEWEST: usize = 5;
+/// Fewest repeated samples, by number and of those that move, and how many of them there must be for each that differs
+/// by one count: noise and stick-slip make both alike.
+const FEWEST: (usize, f64) = (10, 0.005);
 const EXCESS: usize = 4;
 
 /// Which samples of `position` repeat the one before although the axis moves.
@@ -18,11 +18,14 @@ pub(super) fn stale(recording: &Recording, position: &[f64]) -> Vec<bool> {
     let count = count_of(position).unwrap_or(0.0);
     let far = MOVING * count.max(LEAST * (span.1 - span.0));
     let mut stale = vec![false; position.len()];
-    let mut neighbours = 0;
+    let (mut neighbours, mut moving) = (0, 0);
     for segment in recording.segments() {
-        for k in segment.start + 1..segment.end.saturating_sub(1) {
+        for k in segment.start + 2..segment.end.saturating_sub(1) {
             let moved = (position[k] - position[k - 1]).abs();
-            if (position[k + 1] - position[k - 1]).abs() > far {
+            // It moved before, so that it did not start or turn just there.
+            let before = stale[k - 1] || (position[k - 1] - position[k - 2]).abs() > 0.5 * far;
+            if before && (position[k + 1] - position[k - 1]).abs() > far {
+                moving += 1;
                 stale[k] = moved == 0.0;
                 neighbours += usize::from(moved > 0.0 && moved < 1.5 * count);
             }
@@ -30,7 +33,8 @@ pub(super) fn stale(recording: &Recording, position: &[f64]) -> Vec<bool> {
     }
     let repeated = stale.iter().filter(|stale| **stale).count();
     // One count to either side is two ways, none is one.
-    if repeated < FEWEST || repeated * 2 < EXCESS * neighbours {
+    let few = repeated < FEWEST.0 || (repeated as f64) < FEWEST.1 * f64::from(moving);
+    if few || repeated * 2 < EXCESS * neighbours {
         stale.fill(false);
     }
     stale

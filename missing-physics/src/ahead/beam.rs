@@ -166,8 +166,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
             for child in children {
                 let gain = self.comparison.compare(from, &child);
-                if let Some(parameter) = self.at_limit(&climb.base, &child) {
-                    let reason = format!("{parameter} ended at the limit of its search");
+                let limited = self.at_limit(&climb.base, &child);
+                let limited = limited
+                    .map(|parameter| format!("{parameter} ended at the limit of its search"));
+                if let Some(reason) = limited.or_else(|| self.ahead.vanishes(&child.model)) {
                     self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
                     if gain.nats > self.thresholds.better && size == 1 {
                         let effects = self.names(&child).join(" + ");
@@ -288,15 +290,19 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .into_par_iter()
             .map(|node| if node.scale <= NEAR * best { self.rescanned(node) } else { node })
             .collect();
-        let related: Vec<Fitted> = settled
+        let known =
+            |model: &Fitted| model.terms.last().is_some_and(|term| self.candidates.contains(term));
+        let related: Vec<(Fitted, usize)> = settled
             .iter()
             .filter(|node| node.scale <= NEAR * best)
-            .flat_map(|node| self.ahead.relatives(&node.model))
-            .filter(|model| model.terms.last().is_some_and(|term| self.candidates.contains(term)))
+            .flat_map(|node| {
+                let related = self.ahead.relatives(&node.model).into_iter();
+                related.filter(known).map(|model| (model, node.setting)).collect::<Vec<_>>()
+            })
             .collect();
         let related: Vec<Node> = related
             .into_par_iter()
-            .map(|start| self.refit(&start, from.setting, STEPS.1))
+            .map(|(start, setting)| self.refit(&start, setting, STEPS.2))
             .collect();
         settled.extend(related);
         settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
@@ -354,9 +360,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         node.model.terms.iter().map(|term| self.main(*term)).collect()
     }
 
-    /// Number of parameters of the plain forms of a set.
+    /// Number of parameters of a set; a flexible form counts as the plain one that it stands for.
     fn parameters(&self, node: &Node) -> usize {
-        node.model.terms.iter().map(|t| self.family.terms()[self.main(*t)].parameters.len()).sum()
+        let counted = |t: &usize| if self.ahead.is_candidate(*t) { *t } else { self.main(*t) };
+        node.model.terms.iter().map(|t| self.family.terms()[counted(t)].parameters.len()).sum()
     }
 
     fn sorted(&self, mut nodes: Vec<Node>) -> Vec<Node> {

@@ -48,6 +48,11 @@ pub struct Found {
 }
 
 impl Found {
+    /// The last model and its number of effects.
+    pub fn top(&self) -> (&Node, usize) {
+        (self.rungs.last().unwrap_or(&self.base), self.added.len())
+    }
+
     /// Brings what was found on a part to all of the recording: every rung is refitted there and compared anew;
     /// rungs from the first one on that does not hold are taken back.
     pub fn confirm<F: ModelFamily + ?Sized>(

@@ -69,6 +69,11 @@ pub trait Ahead: Sync {
         Vec::new()
     }
 
+    /// Why the term that was added last is none as it was fitted (a gap of no width), in words.
+    fn vanishes(&self, _model: &Fitted) -> Option<String> {
+        None
+    }
+
     /// From how many of a term's trials it is fitted, the best ones first.
     fn starts(&self, _term: usize) -> usize {
         1

@@ -4,19 +4,45 @@
 //! held taken as sampled, or the other way round) takes an effect of its own to make up for it, so that fewer effects
 //! count for it where both predict alike.
 
-use std::cmp::Ordering;
-
+use super::fit::Fitter;
+use super::found::Found;
 use super::node::Node;
+use crate::family::ModelFamily;
 
-/// Whether the best model of one reading, and its number of effects, is to be preferred to that of the other; less than
-/// `better` nats are no difference.
-pub fn is_better(here: (&Node, usize), there: (&Node, usize), better: f64) -> bool {
+/// Steps of a fit in the other reading.
+const STEPS: usize = 6;
+
+/// By how many nats the best model of one reading is to be preferred to that of the other, each with its number of
+/// effects: one with fewer is allowed to lose `better`.
+pub fn nats(here: (&Node, usize), there: (&Node, usize), better: f64) -> f64 {
     let ((here, effects), (there, others)) = (here, there);
-    let points = here.errors.len() as f64 / here.correlation();
-    let nats = points * (there.scale / here.scale).ln();
+    let nats = gain(there, here);
     match effects.cmp(&others) {
-        Ordering::Less => nats > -better,
-        Ordering::Greater => nats > better,
-        Ordering::Equal => nats > 0.0,
+        std::cmp::Ordering::Less => nats + better,
+        std::cmp::Ordering::Equal => nats,
+        std::cmp::Ordering::Greater => nats - better,
     }
+}
+
+/// Whether the other reading, whose `fitter` this is, does as well without one of the effects that were found.
+pub fn needs_less<F: ModelFamily + ?Sized>(
+    found: &Found,
+    other: &F,
+    fitter: &Fitter<'_, F>,
+    better: f64,
+) -> bool {
+    let (top, effects) = found.top();
+    if effects == 0 {
+        return false;
+    }
+    let all = fitter.refit(top.model.clone(), top.setting, STEPS);
+    found.added.iter().any(|term| {
+        let without = fitter.refit(all.model.without(other, *term), all.setting, STEPS);
+        gain(&without, top) < better
+    })
+}
+
+/// Gain in log-likelihood from one model to another, each with errors of its own size.
+fn gain(from: &Node, to: &Node) -> f64 {
+    to.errors.len() as f64 / to.correlation() * (from.scale / to.scale).ln()
 }

@@ -12,6 +12,7 @@ use super::Ahead;
 use super::beam::{Climb, Search, Tell};
 use super::compare::Difference;
 use super::decision::Decision;
+use super::fit::Fitter;
 use super::found::{Found, Ranked};
 use super::node::Node;
 use super::thresholds::Thresholds;
@@ -46,15 +47,26 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let run = Run { settings, sets, started, stop: &stop, tell: &tell };
     let part = family.ahead_in_part();
     let (search, climb) = run.begun(family, part.as_deref().unwrap_or(ahead));
-    let other = family.other_reading().and_then(|other| Some((other, other.ahead()?)));
-    if let Some((other, other_ahead)) = other.filter(|_| !stop()) {
-        let part = other.ahead_in_part();
-        let (second, second_climb) = run.begun(other, part.as_deref().unwrap_or(&*other_ahead));
-        if reading::is_better(second_climb.top(), climb.top(), settings.thresholds.better) {
-            return run.told(other, &*other_ahead, second.finish(second_climb));
+    let other = family.other_reading().filter(|_| !stop());
+    let other = other.and_then(|(other, nats)| Some((other, nats, other.ahead()?)));
+    let Some((other, nats, other_ahead)) = other else {
+        return run.told(family, ahead, search.finish(climb));
+    };
+    let other_part = other.ahead_in_part();
+    let (second, second_climb) = run.begun(other, other_part.as_deref().unwrap_or(&*other_ahead));
+    let better = settings.thresholds.better;
+    if reading::nats(second_climb.top(), climb.top(), better) > nats {
+        return run.told(other, &*other_ahead, second.finish(second_climb));
+    }
+    let found = search.finish(climb);
+    let fitter = Fitter::new(other, other_part.as_deref().unwrap_or(&*other_ahead));
+    if !stop() && reading::needs_less(&found, other, &fitter.stopped_by(&stop), better) {
+        let second = second.finish(second_climb);
+        if reading::nats(second.top(), found.top(), better) > 0.0 {
+            return run.told(other, &*other_ahead, second);
         }
     }
-    run.told(family, ahead, search.finish(climb))
+    run.told(family, ahead, found)
 }
 
 /// One discovery, whatever the reading.

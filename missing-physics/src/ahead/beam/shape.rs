@@ -27,8 +27,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         Some(fit(best.model, STEPS.0 - TRIED))
     }
 
-    /// The node, or one in a lower valley beside it.
-    pub(super) fn rescanned(&self, mut node: Node) -> Node {
+    /// The node at the bottom of its valley, or of a lower one beside it.
+    pub(super) fn rescanned(&self, node: Node) -> Node {
+        let mut node = self.refit(&node.model, node.setting, STEPS.2);
         for _ in 0..RESCANS {
             let beside = self.ahead.variations(&node.model);
             if beside.is_empty() || (self.stop)() {
