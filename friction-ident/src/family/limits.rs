@@ -155,7 +155,8 @@ impl Limits {
             Quantity::Length => (self.position_noise, self.stroke),
             Quantity::Stiffness => (
                 0.05 * self.force.rms / (0.1 * self.stroke),
-                self.force.rms / self.position_noise.max(1e-6 * self.stroke),
+                // Many small errors together see what one of them does not.
+                10.0 * self.force.rms / self.position_noise.max(1e-6 * self.stroke),
             ),
             // A resonance that the sampling cannot follow is only a little more mass; nearer to half of the sampling
             // frequency it would explain how the counts of an even motion beat with the samples.

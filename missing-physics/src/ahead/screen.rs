@@ -11,6 +11,10 @@ use rayon::prelude::*;
 const CUT: f64 = 60.0;
 /// Largest multiple of a whole change, and of the size at which an amplitude was tried.
 const MOST: (f64, f64) = (1.5, 60.0);
+/// A trial that changes the errors by more than so many scales (rms) is looked at once more, at a size that changes them
+/// by about so many.
+const ROUGH: f64 = 6.0;
+const GENTLE: f64 = 2.0;
 /// An amplitude that the first order puts at 0 starts at this share of the size that it was tried at.
 const LEAST: f64 = 0.03;
 
@@ -132,17 +136,44 @@ impl<'a> Screening<'a> {
         family: &F,
         trials: &[Trial],
     ) -> Vec<(f64, Vec<f64>, Vec<Vec<f64>>)> {
-        let probes: Vec<(Fitted, usize)> =
-            trials.iter().flat_map(probes).map(|model| (model, self.node.setting)).collect();
-        let mut errors = self.ahead.errors(&probes).into_iter();
+        let looks: Vec<Look> = trials.iter().flat_map(looks).collect();
+        let with = |looks: &[&Look], shares: &[f64]| -> Vec<Vec<f64>> {
+            let models = looks.iter().zip(shares).map(|(look, share)| look.at(*share));
+            self.ahead.errors(&models.map(|model| (model, self.node.setting)).collect::<Vec<_>>())
+        };
+        let mut errors = with(&looks.iter().collect::<Vec<_>>(), &vec![1.0; looks.len()]);
+        // What changes the errors beyond measure is looked at once more, gently: the first order is what is asked.
+        let mut shares = vec![1.0; looks.len()];
+        let rough: Vec<usize> = (0..looks.len())
+            .filter(|&k| looks[k].amplitude.is_some() && self.size(&errors[k]) > ROUGH)
+            .collect();
+        rough.iter().for_each(|&k| shares[k] = GENTLE / self.size(&errors[k]));
+        let again: Vec<&Look> = rough.iter().map(|k| &looks[*k]).collect();
+        let gently: Vec<f64> = rough.iter().map(|k| shares[*k]).collect();
+        for (k, gentle) in rough.iter().zip(with(&again, &gently)) {
+            errors[*k] = gentle;
+        }
+        let mut columns = errors.iter().zip(&shares).map(|(errors, share)| {
+            let mut column = self.change(errors);
+            column.iter_mut().for_each(|value| *value /= share);
+            column
+        });
         let each = trials.iter().map(|trial| {
             let count = trial.amplitudes.len().max(1);
-            let columns: Vec<Vec<f64>> =
-                errors.by_ref().take(count).map(|e| self.change(&e)).collect();
+            let columns: Vec<Vec<f64>> = columns.by_ref().take(count).collect();
             let (gain, by) = self.gain(family, trial, &columns);
             (gain, by, columns)
         });
         each.collect()
+    }
+
+    /// Root mean square of what a trial changes, in scales.
+    fn size(&self, errors: &[f64]) -> f64 {
+        let cut = CUT * self.scale;
+        let change =
+            errors.iter().zip(&self.node.errors).map(|(e, old)| (e - old).clamp(-cut, cut));
+        let square: f64 = change.map(|change| change * change).sum();
+        (square / errors.len().max(1) as f64).sqrt() / self.scale
     }
 
     fn best<F: ModelFamily + ?Sized>(
@@ -255,17 +286,31 @@ fn positive<F: ModelFamily + ?Sized>(family: &F, trial: &Trial) -> Vec<bool> {
     trial.amplitudes.iter().map(|(k, _)| lower[*k] >= 0.0).collect()
 }
 
-/// The models that a trial is looked at with.
-fn probes(trial: &Trial) -> Vec<Fitted> {
-    if trial.amplitudes.is_empty() {
-        return vec![trial.model.clone()];
-    }
-    let with = |(k, size): &(usize, f64)| {
-        let mut model = trial.model.clone();
-        model.values[*k] = *size;
+/// A model that a trial is looked at with.
+struct Look {
+    model: Fitted,
+    /// The amplitude that is tried, and its size.
+    amplitude: Option<(usize, f64)>,
+}
+
+impl Look {
+    /// The model with this share of the amplitude.
+    fn at(&self, share: f64) -> Fitted {
+        let mut model = self.model.clone();
+        if let Some((k, size)) = self.amplitude {
+            model.values[k] = share * size;
+        }
         model
-    };
-    trial.amplitudes.iter().map(with).collect()
+    }
+}
+
+/// One for each amplitude of a trial, or one for the whole change.
+fn looks(trial: &Trial) -> Vec<Look> {
+    let look = |amplitude| Look { model: trial.model.clone(), amplitude };
+    if trial.amplitudes.is_empty() {
+        return vec![look(None)];
+    }
+    trial.amplitudes.iter().map(|amplitude| look(Some(*amplitude))).collect()
 }
 
 /// The trial with the amplitudes that the first order finds.
