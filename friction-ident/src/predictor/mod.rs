@@ -51,6 +51,8 @@ const PIECE: f64 = 1.0;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Fewest and most plants that advance together.
 const LANES: (usize, usize) = (8, 32);
+/// Plants in the widest vector.
+const VECTOR: usize = 8;
 
 /// What is needed of a recording to predict it.
 #[derive(Clone, Debug)]
@@ -219,7 +221,11 @@ impl Predictor {
 
     fn batch(&self, trials: &[(Model, usize)]) -> Vec<Vec<f64>> {
         let lanes = trials.len();
-        let models: Vec<Model> = trials.iter().map(|(model, _)| model.clone()).collect();
+        let mut models: Vec<Model> = trials.iter().map(|(model, _)| model.clone()).collect();
+        // A vector that is not full costs as much as one that is, lanes beside it far more.
+        if let Some(last) = models.last().filter(|_| lanes > 1).cloned() {
+            models.resize(lanes.next_multiple_of(VECTOR), last);
+        }
         let Ok(mut plants) = Plants::new(&models) else {
             return vec![vec![f64::NAN; self.counted.len()]; lanes];
         };
@@ -231,12 +237,13 @@ impl Predictor {
         let step = if two { STEP_OF_TWO } else { STEP };
         let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
         let mut errors = vec![Vec::with_capacity(self.counted.len()); lanes];
-        let (mut length, mut command) = (vec![0.0; lanes], vec![0.0; lanes]);
-        let (mut dx, mut dv) = (vec![0.0; lanes], vec![0.0; lanes]);
+        let all = models.len();
+        let (mut length, mut command) = (vec![0.0; all], vec![0.0; all]);
+        let (mut dx, mut dv) = (vec![0.0; all], vec![0.0; all]);
         let mut counted = self.counted.iter().copied().peekable();
         for segment in &self.segments {
             let start = self.start(segment);
-            (0..lanes).for_each(|i| plants.start(i, &start));
+            (0..all).for_each(|i| plants.start(i, &start));
             for k in segment.start..segment.end - 1 {
                 let (steps, duration) = input.steps(k);
                 length.fill(duration);
@@ -265,6 +272,9 @@ impl Predictor {
                     let fed = if finite { error.clamp(-self.fed_back, self.fed_back) } else { 0.0 };
                     dx[i] = g.position[n] * fed;
                     dv[i] = g.velocity[n] * fed;
+                }
+                for i in lanes..all {
+                    (dx[i], dv[i]) = (dx[lanes - 1], dv[lanes - 1]);
                 }
                 plants.correct(&dx, &dv);
             }
