@@ -222,9 +222,10 @@ impl Predictor {
     fn batch(&self, trials: &[(Model, usize)]) -> Vec<Vec<f64>> {
         let lanes = trials.len();
         let mut models: Vec<Model> = trials.iter().map(|(model, _)| model.clone()).collect();
-        // A vector that is not full costs as much as one that is, lanes beside it far more.
-        if let Some(last) = models.last().filter(|_| lanes > 1).cloned() {
-            models.resize(lanes.next_multiple_of(VECTOR), last);
+        let two = models[0].acts_on(Slot::Attached);
+        if two && lanes > 1 {
+            // A vector that is not full costs as much as one that is, plants beside it far more.
+            models.resize(lanes.next_multiple_of(VECTOR), trials[lanes - 1].0.clone());
         }
         let Ok(mut plants) = Plants::new(&models) else {
             return vec![vec![f64::NAN; self.counted.len()]; lanes];
@@ -233,7 +234,6 @@ impl Predictor {
         let gain: Vec<&Gain> = trials.iter().map(|(_, s)| &self.gains[s % rungs]).collect();
         let at_rest: Vec<&Gain> =
             trials.iter().map(|(_, s)| &self.gains[if *s < rungs { *s } else { 0 }]).collect();
-        let two = models[0].acts_on(Slot::Attached);
         let step = if two { STEP_OF_TWO } else { STEP };
         let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
         let mut errors = vec![Vec::with_capacity(self.counted.len()); lanes];

@@ -15,6 +15,10 @@ const LEAST: f64 = 1e-7;
 const CONVERGED: f64 = 3e-4;
 /// By how much a setting must lower the error to be preferred to a smaller process noise.
 const PREFERRED: f64 = 0.985;
+/// How far a fitted model looks for a better setting at once: on its own ladder, and on the other one.
+const REACH: (usize, usize) = (2, 1);
+/// Most times that it moves on.
+const MOVES: usize = 3;
 /// Cut of squares where settings are compared.
 const SETTING_CUT: f64 = 25.0;
 
@@ -65,11 +69,11 @@ impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
 
     /// The node at the setting that suits it best, refitted there.
     pub fn settled(&self, mut node: Node, steps: usize) -> Node {
-        for _ in 0..2 {
+        for _ in 0..MOVES {
             if (self.stop)() {
                 break;
             }
-            let setting = best_setting(self.ahead, &node.model);
+            let setting = better_setting(self.ahead, &node);
             if setting == node.setting {
                 break;
             }
@@ -153,12 +157,29 @@ impl Normal {
 
 /// The setting of the process noise at which a model predicts best.
 pub fn best_setting(ahead: &dyn Ahead, model: &Fitted) -> usize {
-    let trials: Vec<(Fitted, usize)> = (0..ahead.settings()).map(|s| (model.clone(), s)).collect();
+    best_of(ahead, model, (0..ahead.settings()).collect())
+}
+
+/// The best setting among those near to a node's own, on either ladder.
+fn better_setting(ahead: &dyn Ahead, node: &Node) -> usize {
+    let rungs = ahead.settings() / 2;
+    let own = node.setting % rungs.max(1);
+    let near = |setting: &usize| {
+        let reach =
+            if *setting / rungs.max(1) == node.setting / rungs.max(1) { REACH.0 } else { REACH.1 };
+        (setting % rungs.max(1)).abs_diff(own) <= reach
+    };
+    best_of(ahead, &node.model, (0..ahead.settings()).filter(near).collect())
+}
+
+/// The first of `settings` that no later one betters clearly.
+fn best_of(ahead: &dyn Ahead, model: &Fitted, settings: Vec<usize>) -> usize {
+    let trials: Vec<(Fitted, usize)> = settings.iter().map(|s| (model.clone(), *s)).collect();
     let mut best = (0, f64::INFINITY);
-    for (setting, errors) in ahead.errors(&trials).iter().enumerate() {
-        let rms = statistics::rms(errors, SETTING_CUT);
+    for (setting, errors) in settings.iter().zip(ahead.errors(&trials)) {
+        let rms = statistics::rms(&errors, SETTING_CUT);
         if rms < best.1 * PREFERRED {
-            best = (setting, rms);
+            best = (*setting, rms);
         }
     }
     best.0

@@ -21,8 +21,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if let [start] = &promise.starts[..] {
             return Some(fit(start.clone(), STEPS.0));
         }
+        // Which start leads deepest shows on a part.
+        let part = self.ahead.part();
+        let fitter = Fitter::new(self.family, part.as_deref().unwrap_or(self.ahead));
+        let fitter = fitter.stopped_by(self.stop);
         let starts = promise.starts.par_iter();
-        let tried: Vec<Node> = starts.map(|start| fit(start.clone(), TRIED)).collect();
+        let tried: Vec<Node> =
+            starts.map(|start| fitter.fit(start.clone(), setting, TRIED)).collect();
         let best = tried.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale))?;
         Some(fit(best.model, STEPS.0 - TRIED))
     }
