@@ -149,10 +149,27 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         while !climb.ended && climb.nodes.len() <= self.thresholds.most {
             self.grow(&mut climb);
         }
-        let best = self.size(&climb);
-        let (last, costs) = self.prune(&climb, best);
-        let last = self.plainest(last);
-        self.conclude(climb, &last, costs)
+        let mut best = self.size(&climb);
+        loop {
+            let (needed, costs) = self.prune(&climb, best);
+            let last = self.plainest(needed);
+            let beside = self.beside(&last);
+            let by_chance = |cost: f64| beside.chance.p_value(cost) > self.thresholds.chance;
+            let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1.nats))
+            else {
+                return self.conclude(climb, &last, costs, beside);
+            };
+            let (size, cost) = (costs.len() - 1, negative(*cost));
+            self.note(size, without, &last, cost, Outcome::Dropped, "chance gains as much");
+            best = without.clone();
+        }
+    }
+
+    /// The candidates beside a model, with what they would gain by chance.
+    fn beside(&self, node: &Node) -> Screened {
+        let open = self.candidates.iter().copied();
+        let open: Vec<usize> = open.filter(|&t| self.family.joins(&node.model, t)).collect();
+        screen(self.family, self.ahead, node, &open, true)
     }
 
     /// Sets with one effect more.

@@ -29,7 +29,7 @@ pub struct Found {
     pub as_good: Vec<Vec<usize>>,
     /// Candidates beside the best set of each size.
     pub ranking: Vec<Ranked>,
-    /// Chance of as large a first-order gain, for each rung.
+    /// Chance of a gain as large as what the last model would lose without it, for each effect.
     pub p_values: Vec<f64>,
     /// The candidates beside the last model, to first order.
     pub last_screening: Vec<Promise>,
@@ -94,8 +94,7 @@ impl Found {
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
-    /// Takes all names back where much is left and what was found explains little of it: the nearest effects are not
-    /// the cause then.
+    /// Takes all names back where what is left is in a few wild samples: that is no business of any effect.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
@@ -103,12 +102,7 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
-        let excess = |node: &Node| ((node.scale / ahead.budget()).powi(2) - 1.0).max(0.0);
-        // A search that was cut short has not said its last word. What a few wild samples leave is no business of any
-        // effect.
-        let ended = !self.stopped && self.added.len() < thresholds.most;
-        let explains = !ended || excess(top) <= (1.0 - thresholds.explained) * excess(&self.base);
-        if explains && local::faults(&top.errors).is_none() {
+        if local::faults(&top.errors).is_none() {
             return;
         }
         let names: Vec<&str> =

@@ -14,9 +14,9 @@ pub struct Thresholds {
     /// A model that errs more than this many times what the sensors make at some place, at some time or in isolated
     /// samples is incomplete, whatever it does on the whole.
     pub local: f64,
-    /// Effects are only named where they remove at least this share of what exceeds the sensors, or leave a complete
-    /// model: else the nearest effects are not the cause.
-    pub explained: f64,
+    /// Largest p-value of an effect: how often any candidate gains as much as the last model would lose without it, where
+    /// the errors that it leaves are shifted in time.
+    pub chance: f64,
     /// Sets that are followed side by side.
     pub beam: usize,
     /// Candidates that are fitted beside each set.
@@ -33,7 +33,7 @@ impl Default for Thresholds {
             as_good: (6.0, 0.02),
             complete: 1.3,
             local: 2.0,
-            explained: 0.4,
+            chance: 0.05,
             beam: 3,
             fitted: 5,
             most: 4,

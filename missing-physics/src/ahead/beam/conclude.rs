@@ -78,7 +78,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// The model without a term, refitted.
     fn without(&self, climb: &Climb, node: &Node, term: usize) -> Node {
-        let model = node.model.without(self.family, term);
+        // A rung below may have it in another form.
+        let form = node.model.terms.iter().find(|t| self.main(**t) == self.main(term));
+        let model = node.model.without(self.family, *form.unwrap_or(&term));
         if Self::added(&climb.base, node).len() == 1 {
             return climb.base.clone();
         }
@@ -97,6 +99,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         climb: Climb,
         last: &Node,
         costs: Vec<(usize, Difference, Node)>,
+        beside: Screened,
     ) -> Found {
         let base = climb.base.clone();
         // Forms may have changed since the costs were taken.
@@ -131,17 +134,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .collect();
         let stopped = (self.stop)();
         let top = rungs.last().unwrap_or(&base).clone();
-        let open = self.candidates.iter().copied().filter(|&t| self.family.joins(&top.model, t));
-        let open: Vec<usize> = open.collect();
-        let last_screening = if stopped {
-            Vec::new()
-        } else {
-            screen(self.family, self.ahead, &top, &open, false).promises
-        };
-        let of = |gain: &Difference, k: usize| {
-            climb.ranking.get(k).map_or(1.0, |ranked| ranked.chance.p_value(gain.nats))
-        };
-        let p_values = gains.iter().enumerate().map(|(k, gain)| of(gain, k)).collect();
+        let p_values = costs.iter().map(|(_, cost, _)| beside.chance.p_value(cost.nats)).collect();
         let places = local::places(self.ahead, &top, self.thresholds.local);
         let complete = self.budget(&top) <= self.thresholds.complete && places.is_empty();
         let mut decisions = std::mem::take(&mut self.decisions);
@@ -161,7 +154,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             as_good,
             ranking: climb.ranking,
             p_values,
-            last_screening,
+            last_screening: beside.promises,
             complete,
             places,
             notes: std::mem::take(&mut self.notes),
