@@ -15,7 +15,7 @@ const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
 const MOST_SAMPLES: usize = 12_000;
 /// Samples on which the trials of a term are ranked.
-const RANKED_ON: usize = 2_000;
+const RANKED_ON: usize = 3_000;
 /// Starts of a second body that are fitted: its valleys are narrow.
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.

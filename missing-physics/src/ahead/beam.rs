@@ -37,6 +37,9 @@ const NEAR: f64 = 1.25;
 const PROMISING: f64 = 2.0;
 /// A model is well inside the budget below this multiple of it.
 const INSIDE: f64 = 1.12;
+/// A search ends where chance gains as much as the best candidate this often: two effects may hide each other, but not
+/// so well.
+const HOPELESS: f64 = 0.5;
 /// Candidates that are fitted before it is asked whether others are needed, and the share of their promise from which
 /// another one is a rival.
 const FIRST: usize = 2;
@@ -176,6 +179,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn grow(&mut self, climb: &mut Climb) {
         let size = climb.nodes.len();
         let mut next: Vec<(Node, Difference)> = Vec::new();
+        let mut least = 1.0f64;
         for (place, from) in climb.beam.iter().enumerate() {
             let (children, screened) = self.expand(&climb.base, from, size, place == 0);
             if place == 0 {
@@ -183,6 +187,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
             for child in children {
                 let gain = self.comparison.compare(from, &child);
+                if let Some(ranked) = climb.ranking.last().filter(|_| place == 0) {
+                    least = least.min(ranked.chance.p_value(gain.nats));
+                }
                 let limited = self.at_limit(&climb.base, &child);
                 let limited = limited
                     .map(|parameter| format!("{parameter} ended at the limit of its search"));
@@ -214,8 +221,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
         }
         let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
-        // A size that was cut short says nothing: the best of it may not have been fitted.
-        if ranked.is_empty() || (self.stop)() || self.thresholds.most == 0 {
+        // A size that was cut short says nothing: the best of it may not have been fitted. Nor does one where chance
+        // gains as much as the best.
+        let by_chance = least > HOPELESS;
+        if ranked.is_empty() || by_chance || (self.stop)() || self.thresholds.most == 0 {
             climb.ended = true;
             return;
         }

@@ -94,7 +94,8 @@ impl Found {
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
-    /// Takes all names back where what is left is in a few wild samples: that is no business of any effect.
+    /// Takes all names back where what is left is in a few wild samples, or where samples are known to be faulty: that is
+    /// no business of any effect.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
@@ -102,7 +103,7 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
-        if local::faults(&top.errors).is_none() {
+        if local::faults(&top.errors).is_none() && ahead.faults().is_none() {
             return;
         }
         let names: Vec<&str> =
