@@ -103,7 +103,8 @@ fn one_ahead<F: ModelFamily + ?Sized>(
             here.gain = Some(1.0 - (-2.0 * gain.nats / points.max(1.0)).exp());
             here.p_value = Some(by.p_value());
             here.nats = Some(by.nats);
-            here.holds = Some(by.nats > 0.0 && gain.nats > settings.thresholds.better);
+            let seen = by.nats > 0.0 && by.p_value() <= settings.alpha;
+            here.holds = Some(seen && gain.nats > settings.thresholds.better);
         }
         below = Some((found, anew));
         all.push(here);

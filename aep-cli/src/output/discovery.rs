@@ -533,7 +533,7 @@ mod tests {
             "Sets of 1 effect",
             "Sets of 2 effects",
             "+812 ± 15",
-            "> +40",
+            "> +50",
             "another is better",
             "gains too little",
         ] {

@@ -211,7 +211,7 @@ mod tests {
 
     /// Force and `tau` times its rate after `time` s under a command of 10 N, and the impulse until then.
     fn second(tau: f64, zeta: f64, step: f64, count: u32) -> ([f64; 2], f64) {
-        let (mut state, mut impulse, past) = ([2.0, -1.0], 0.0, Past::default());
+        let (mut state, mut impulse, past) = ([2.0, -1.0, 0.0, 1.0, 0.0], 0.0, Past::default());
         for _ in 0..count {
             let mut force = [10.0];
             let advance = Advance { duration: &[step], end: &[0.0], past: &past };
@@ -223,7 +223,7 @@ mod tests {
             );
             impulse += force[0] * step;
         }
-        (state, impulse)
+        ([state[0], state[1]], impulse)
     }
 
     #[test]

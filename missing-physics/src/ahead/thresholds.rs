@@ -30,7 +30,7 @@ impl Default for Thresholds {
         Self {
             better: 50.0,
             share: 0.02,
-            as_good: (6.0, 0.02),
+            as_good: (50.0, 0.02),
             complete: 1.3,
             local: 2.0,
             chance: 0.05,

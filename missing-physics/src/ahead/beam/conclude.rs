@@ -17,7 +17,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 .iter()
                 .take(6)
                 .filter(|set| self.comparison.compare(set, top).nats <= near)
-                .min_by_key(|set| self.parameters(set))
+                .min_by(|a, b| {
+                    let fewer = self.parameters(a).cmp(&self.parameters(b));
+                    fewer.then(a.scale.total_cmp(&b.scale))
+                })
                 .unwrap_or(top);
             let polished = self.refit(&simplest.model, simplest.setting, STEPS.2);
             let set = if self.comparison.compare(simplest, &polished).nats > 0.0 {
