@@ -314,7 +314,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let best = settled.iter().map(|node| node.scale).fold(f64::INFINITY, f64::min);
         settled = settled
             .into_par_iter()
-            .map(|node| if node.scale <= NEAR * best { self.rescanned(node) } else { node })
+            .map(|node| if node.scale <= NEAR * best { self.rescanned(&node) } else { node })
             .collect();
         let known =
             |model: &Fitted| model.terms.last().is_some_and(|term| self.candidates.contains(term));

@@ -44,6 +44,7 @@ impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
     }
 
     /// One that goes no further once `stop` says so.
+    #[must_use]
     pub fn stopped_by(self, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
         Self { stop, ..self }
     }
@@ -157,7 +158,7 @@ impl Normal {
 
 /// The setting of the process noise at which a model predicts best.
 pub fn best_setting(ahead: &dyn Ahead, model: &Fitted) -> usize {
-    best_of(ahead, model, (0..ahead.settings()).collect())
+    best_of(ahead, model, &(0..ahead.settings()).collect::<Vec<_>>())
 }
 
 /// The best setting among those near to a node's own, on either ladder.
@@ -169,11 +170,11 @@ fn better_setting(ahead: &dyn Ahead, node: &Node) -> usize {
             if *setting / rungs.max(1) == node.setting / rungs.max(1) { REACH.0 } else { REACH.1 };
         (setting % rungs.max(1)).abs_diff(own) <= reach
     };
-    best_of(ahead, &node.model, (0..ahead.settings()).filter(near).collect())
+    best_of(ahead, &node.model, &(0..ahead.settings()).filter(near).collect::<Vec<_>>())
 }
 
 /// The first of `settings` that no later one betters clearly.
-fn best_of(ahead: &dyn Ahead, model: &Fitted, settings: Vec<usize>) -> usize {
+fn best_of(ahead: &dyn Ahead, model: &Fitted, settings: &[usize]) -> usize {
     let trials: Vec<(Fitted, usize)> = settings.iter().map(|s| (model.clone(), *s)).collect();
     let mut best = (0, f64::INFINITY);
     for (setting, errors) in settings.iter().zip(ahead.errors(&trials)) {

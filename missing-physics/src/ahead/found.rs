@@ -125,7 +125,7 @@ impl Found {
     }
 
     /// Whether a term, in whatever form, is among `terms`.
-    pub fn is_in<F: ModelFamily + ?Sized>(&self, terms: &[usize], term: usize, family: &F) -> bool {
+    pub fn is_in<F: ModelFamily + ?Sized>(terms: &[usize], term: usize, family: &F) -> bool {
         let main = |t: usize| family.form_of(t).unwrap_or(t);
         terms.iter().any(|other| main(*other) == main(term))
     }

@@ -260,9 +260,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                 let others: Vec<usize> = set
                     .iter()
                     .copied()
-                    .filter(|t| !self.found.is_in(added.as_slice(), *t, self.family))
+                    .filter(|t| !Found::is_in(added.as_slice(), *t, self.family))
                     .collect();
-                let lacks = !self.found.is_in(set, *term, self.family);
+                let lacks = !Found::is_in(set, *term, self.family);
                 (others.len() == 1 && lacks).then(|| others[0])
             });
             let mut terms = vec![*term];

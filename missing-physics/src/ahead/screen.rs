@@ -147,7 +147,9 @@ impl<'a> Screening<'a> {
         let rough: Vec<usize> = (0..looks.len())
             .filter(|&k| looks[k].amplitude.is_some() && self.size(&errors[k]) > ROUGH)
             .collect();
-        rough.iter().for_each(|&k| shares[k] = GENTLE / self.size(&errors[k]));
+        for &k in &rough {
+            shares[k] = GENTLE / self.size(&errors[k]);
+        }
         let again: Vec<&Look> = rough.iter().map(|k| &looks[*k]).collect();
         let gently: Vec<f64> = rough.iter().map(|k| shares[*k]).collect();
         for (k, gentle) in rough.iter().zip(with(&again, &gently)) {
@@ -155,7 +157,9 @@ impl<'a> Screening<'a> {
         }
         let mut columns = errors.iter().zip(&shares).map(|(errors, share)| {
             let mut column = self.change(errors);
-            column.iter_mut().for_each(|value| *value /= share);
+            for value in &mut column {
+                *value /= share;
+            }
             column
         });
         let each = trials.iter().map(|trial| {

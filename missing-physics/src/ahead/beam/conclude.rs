@@ -1,7 +1,13 @@
 //! The size of the set, what is not needed, and the answer.
 
-use super::super::local;
-use super::*;
+use super::{Climb, STEPS, Search, negative};
+use crate::ahead::compare::Difference;
+use crate::ahead::decision::Outcome;
+use crate::ahead::found::Found;
+use crate::ahead::local;
+use crate::ahead::node::Node;
+use crate::ahead::screen::Screened;
+use crate::family::ModelFamily;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The best set, of the smallest size that is needed.

@@ -2,14 +2,12 @@
 
 use rayon::prelude::*;
 
+use super::{FORM, LOWER, RESCANS, STEPS, Search, TRIED, negative};
+use crate::ahead::decision::Outcome;
+use crate::ahead::fit::{self, Fitter};
+use crate::ahead::node::Node;
+use crate::ahead::screen::{Promise, screen};
 use crate::family::{Fitted, ModelFamily};
-
-use super::super::{
-    fit,
-    node::Node,
-    screen::{Promise, screen},
-};
-use super::*;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// A candidate fitted from the best of its starts; nothing where time ran out.
@@ -33,7 +31,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// The node at the bottom of its valley, or of a lower one beside it.
-    pub(super) fn rescanned(&self, node: Node) -> Node {
+    pub(super) fn rescanned(&self, node: &Node) -> Node {
         let mut node = self.refit(&node.model, node.setting, STEPS.2);
         for _ in 0..RESCANS {
             let beside = self.ahead.variations(&node.model);
