@@ -134,7 +134,7 @@ fn what_decided_stands_on_the_page() {
         "2 comparisons of models",
         "Sets of 1 effect",
         "+35 ± 7.0",
-        "&gt; +50",
+        "&gt; +80",
         "gains too little (so &lt;it&gt; is)",
         "another is better",
         "&lt;= 0.001",

@@ -533,7 +533,7 @@ mod tests {
             "Sets of 1 effect",
             "Sets of 2 effects",
             "+812 ± 15",
-            "> +50",
+            "> +80",
             "another is better",
             "gains too little",
         ] {

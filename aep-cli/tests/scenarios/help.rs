@@ -42,7 +42,7 @@ fn thresholds_and_limits_stand_in_the_help_with_their_defaults() {
         let help = desk.aep(&format!("{command} --help"));
         for part in [
             "--better",
-            "50",
+            "80",
             "--share",
             "--as-good",
             "--complete",

@@ -259,7 +259,7 @@ mod tests {
         let record = compared(&found, &Thresholds::default());
         let titles: Vec<&str> = record.iter().map(|group| group.title.as_str()).collect();
         assert_eq!(titles, ["Sets of 1 effect", "Sets of 2 effects"]);
-        let first = ["stribeck", "base model", "+340 ± 12", "> +50", "1.50", "added"];
+        let first = ["stribeck", "base model", "+340 ± 12", "> +80", "1.50", "added"];
         assert_eq!(record[0].rows[0], first);
         assert_eq!(record[0].rows[1][5], "gains too little");
         assert_eq!(&record[0].rows[2][3..], ["> -40", "1.50", "drift dropped"]);
@@ -302,7 +302,7 @@ mod tests {
                 too_little,
                 elsewhere
             ]),
-            "the best refused, drift, gains +30 nats, and 50 are needed"
+            "the best refused, drift, gains +30 nats, and 80 are needed"
         );
         let share = decision(2, "stribeck+drift", "stribeck", 140.0, "too_little");
         let passed = decision(2, "stribeck+ripple", "stribeck", 150.0, "worse");

@@ -28,7 +28,7 @@ pub struct Thresholds {
 impl Default for Thresholds {
     fn default() -> Self {
         Self {
-            better: 50.0,
+            better: 80.0,
             share: 0.02,
             as_good: (50.0, 0.02),
             complete: 1.3,
