@@ -249,7 +249,8 @@ fn a_servo_lacks_load_friction_at_one_gain_and_the_other_gain_confirms_it() {
         let json = desk.json("out.json");
         assert_eq!(json["added"][0], "load-friction");
         let ranking = json["ranking"][0].as_array().unwrap();
-        assert!(ranking.iter().take(3).any(|row| row["effect"] == "load-friction"));
+        // What the margin does not tell apart stands beside it.
+        assert!(ranking.iter().take(5).any(|row| row["effect"] == "load-friction"));
         let rungs = &json["confirmation"]["rungs"];
         let error = |rung: usize| rungs[rung]["error"]["torque_relative"].as_f64().unwrap();
         // Parameters of the one gain on the other.
