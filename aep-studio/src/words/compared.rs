@@ -262,7 +262,7 @@ mod tests {
         let first = ["stribeck", "base model", "+340 ± 12", "> +80", "1.50", "added"];
         assert_eq!(record[0].rows[0], first);
         assert_eq!(record[0].rows[1][5], "gains too little");
-        assert_eq!(&record[0].rows[2][3..], ["> -40", "1.50", "drift dropped"]);
+        assert_eq!(&record[0].rows[2][3..], ["> -80", "1.50", "drift dropped"]);
         assert_eq!(record[1].rows[0][5], "gains too little: below 2.00 % of all that is explained");
         assert_eq!(record[1].rows[1][5], "not identifiable");
         assert_eq!(comparisons(&found).unwrap(), "5 comparisons of models");
@@ -314,7 +314,7 @@ mod tests {
         assert!(why(&[gone]).starts_with("drift was taken out again: without it 20 nats are lost"));
         assert_eq!(
             why(&[]),
-            "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats where 40 are needed"
+            "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats where 80 are needed"
         );
         // The rung that was reached needs no excuse.
         assert_eq!(why_nothing(&discovery(&["stribeck"], &[]), 0, &Thresholds::default()), None);
