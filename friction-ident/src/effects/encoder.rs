@@ -67,7 +67,7 @@ impl Effect for Encoder {
 
 impl Sensor for Encoder {
     fn show(&self, p: Parameters<'_>, position: &mut [f64]) {
-        wave(p.get(0), p.get(1), p.get(2), position);
+        wave(p, position);
     }
 
     fn correct(&self, p: &[f64], shown: &mut Shown<'_>) {
@@ -86,9 +86,9 @@ impl Sensor for Encoder {
 
 vectorised! {
     /// Adds the error at each position.
-    fn wave(a: &[f64], b: &[f64], period: &[f64], position: &mut [f64]) {
+    fn wave(p: Parameters<'_>, position: &mut [f64]) {
         let lanes = position.len();
-        let (a, b, period) = (&a[..lanes], &b[..lanes], &period[..lanes]);
+        let [a, b, period] = std::array::from_fn(|k| &p.get(k)[..lanes]);
         for i in 0..lanes {
             let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
             position[i] += a[i] * sin + b[i] * cos;

@@ -113,7 +113,7 @@ impl Effect for Ripple {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        two(p.get(0), p.get(1), p.get(2), p.get(3), p.get(4), m.position, out.force);
+        two(p, m.position, out.force);
     }
 }
 
@@ -123,9 +123,7 @@ impl Effect for Harmonics {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let a: [&[f64]; COUNT] = std::array::from_fn(|k| p.get(k));
-        let b: [&[f64]; COUNT] = std::array::from_fn(|k| p.get(COUNT + k));
-        six(a, b, p.get(2 * COUNT), m.position, out.force);
+        six(p, m.position, out.force);
     }
 }
 
@@ -143,25 +141,12 @@ impl Effect for Direction {
     }
 }
 
-/// Adds half of the ripple forth and half of that back times `back`.
-fn half(p: Parameters<'_>, position: &[f64], back: f64, out: &mut [f64]) {
-    either(back, p.get(0), p.get(1), p.get(2), p.get(3), p.get(4), position, out);
-}
-
 vectorised! {
     /// Adds the fundamental and the second harmonic.
-    fn two(
-        a1: &[f64],
-        b1: &[f64],
-        a2: &[f64],
-        b2: &[f64],
-        period: &[f64],
-        position: &[f64],
-        force: &mut [f64],
-    ) {
+    fn two(p: Parameters<'_>, position: &[f64], force: &mut [f64]) {
         let lanes = force.len();
-        let (a1, b1, a2, b2) = (&a1[..lanes], &b1[..lanes], &a2[..lanes], &b2[..lanes]);
-        let (period, position) = (&period[..lanes], &position[..lanes]);
+        let [a1, b1, a2, b2, period] = std::array::from_fn(|k| &p.get(k)[..lanes]);
+        let position = &position[..lanes];
         for i in 0..lanes {
             let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
             // sin 2a = 2 sin a cos a, cos 2a = 1 - 2 sin^2 a.
@@ -171,16 +156,11 @@ vectorised! {
     }
 
     /// Adds harmonics 1 to `COUNT`.
-    fn six(
-        a: [&[f64]; COUNT],
-        b: [&[f64]; COUNT],
-        period: &[f64],
-        position: &[f64],
-        force: &mut [f64],
-    ) {
+    fn six(p: Parameters<'_>, position: &[f64], force: &mut [f64]) {
         let lanes = force.len();
-        let (a, b) = (a.map(|a| &a[..lanes]), b.map(|b| &b[..lanes]));
-        let (period, position) = (&period[..lanes], &position[..lanes]);
+        let a: [&[f64]; COUNT] = std::array::from_fn(|k| &p.get(k)[..lanes]);
+        let b: [&[f64]; COUNT] = std::array::from_fn(|k| &p.get(COUNT + k)[..lanes]);
+        let (period, position) = (&p.get(2 * COUNT)[..lanes], &position[..lanes]);
         for i in 0..lanes {
             let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
             let (mut sin_k, mut cos_k, mut sum) = (sin, cos, 0.0);
@@ -193,19 +173,10 @@ vectorised! {
     }
 
     /// Adds half of the ripple forth and half of that back times `back`.
-    fn either(
-        back: f64,
-        a_p: &[f64],
-        b_p: &[f64],
-        a_m: &[f64],
-        b_m: &[f64],
-        period: &[f64],
-        position: &[f64],
-        out: &mut [f64],
-    ) {
+    fn half(p: Parameters<'_>, position: &[f64], back: f64, out: &mut [f64]) {
         let lanes = out.len();
-        let (a_p, b_p, a_m, b_m) = (&a_p[..lanes], &b_p[..lanes], &a_m[..lanes], &b_m[..lanes]);
-        let (period, position) = (&period[..lanes], &position[..lanes]);
+        let [a_p, b_p, a_m, b_m, period] = std::array::from_fn(|k| &p.get(k)[..lanes]);
+        let position = &position[..lanes];
         for i in 0..lanes {
             let (sin, cos) = sin_cos_of_turns(position[i] / period[i]);
             out[i] += 0.5 * ((a_p[i] + back * a_m[i]) * sin + (b_p[i] + back * b_m[i]) * cos);

@@ -23,8 +23,10 @@ const STEPS: usize = 5;
 pub struct HoldChoice {
     /// What predicts better.
     pub hold: Hold,
-    /// Log-likelihood over that of the other, nats.
+    /// Log-likelihood of the simplest model over that in the other reading, nats.
     pub nats: f64,
+    /// Whether that is too little, so that the search decided.
+    pub by_search: bool,
 }
 
 /// The family of a recording whose hold nobody stated, with the one that predicts better.
@@ -37,30 +39,26 @@ pub(super) fn decided(
     let (sampled, held) = (with(Hold::Sampled)?, with(Hold::ZeroOrder)?);
     let (Some(a), Some(b)) = (likelihood(&sampled), likelihood(&held)) else { return Ok(sampled) };
     let nats = (a - b).abs();
-    let (hold, mut family, other) =
-        if b > a { (Hold::ZeroOrder, held, sampled) } else { (Hold::Sampled, sampled, held) };
-    let choose = |hold: Hold| Some(HoldChoice { hold, nats });
-    family.hold = choose(hold);
-    if nats < CLEAR * recording.len() as f64 {
-        // The search itself has to tell.
-        let mut other = other;
-        let second = if hold == Hold::Sampled { Hold::ZeroOrder } else { Hold::Sampled };
-        other.hold = choose(second);
-        other.by_search = true;
-        family.by_search = true;
-        family.other_hold = Some(Box::new(other));
-    }
-    Ok(family)
+    let by_search = nats < CLEAR * recording.len() as f64;
+    let chosen = |hold: Hold, family: FrictionFamily| FrictionFamily {
+        hold: Some(HoldChoice { hold, nats, by_search }),
+        ..family
+    };
+    let (sampled, held) = (chosen(Hold::Sampled, sampled), chosen(Hold::ZeroOrder, held));
+    let (family, other) = if b > a { (held, sampled) } else { (sampled, held) };
+    // Where the simplest model hardly tells the search itself has to.
+    let other_hold = by_search.then(|| Box::new(other));
+    Ok(FrictionFamily { other_hold, ..family })
 }
 
 impl HoldChoice {
     /// What was decided, in words.
-    pub(super) fn words(self, by_search: bool) -> String {
+    pub(super) fn words(self) -> String {
         let how = match self.hold {
             Hold::ZeroOrder => "held from one sample to the next",
             Hold::Sampled => "sampled, changing evenly between samples",
         };
-        let why = if by_search {
+        let why = if self.by_search {
             "the simplest model hardly tells, the best model with one effect predicts better so"
                 .to_owned()
         } else {

@@ -77,8 +77,6 @@ pub struct FrictionFamily {
     stroke: (f64, f64),
     hold: Option<HoldChoice>,
     other_hold: Option<Box<Self>>,
-    /// Whether the search decides about the hold.
-    by_search: bool,
     ahead: Option<ahead::OneAhead>,
     thinned: Option<ahead::OneAhead>,
     top_speed: f64,
@@ -135,7 +133,6 @@ impl FrictionFamily {
             stroke,
             hold: None,
             other_hold: None,
-            by_search: false,
             ahead: None,
             thinned: None,
             top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
@@ -403,7 +400,7 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn reading(&self) -> Option<String> {
-        self.hold.map(|choice| choice.words(self.by_search))
+        self.hold.map(|choice| choice.words())
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {

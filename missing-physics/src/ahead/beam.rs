@@ -43,9 +43,9 @@ const HOPELESS: f64 = 0.5;
 /// Candidates that are fitted before it is asked whether others are needed, and the share of their promise from which
 /// another one is a rival.
 const FIRST: usize = 2;
+const RIVAL: f64 = 0.1;
 /// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
 const AGAIN: usize = 8;
-const RIVAL: f64 = 0.1;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 

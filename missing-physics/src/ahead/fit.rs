@@ -163,12 +163,11 @@ pub fn best_setting(ahead: &dyn Ahead, model: &Fitted) -> usize {
 
 /// The best setting among those near to a node's own, on either ladder.
 fn better_setting(ahead: &dyn Ahead, node: &Node) -> usize {
-    let rungs = ahead.settings() / 2;
-    let own = node.setting % rungs.max(1);
+    let rungs = (ahead.settings() / 2).max(1);
+    let (ladder, rung) = (node.setting / rungs, node.setting % rungs);
     let near = |setting: &usize| {
-        let reach =
-            if *setting / rungs.max(1) == node.setting / rungs.max(1) { REACH.0 } else { REACH.1 };
-        (setting % rungs.max(1)).abs_diff(own) <= reach
+        let reach = if setting / rungs == ladder { REACH.0 } else { REACH.1 };
+        (setting % rungs).abs_diff(rung) <= reach
     };
     best_of(ahead, &node.model, &(0..ahead.settings()).filter(near).collect::<Vec<_>>())
 }

@@ -12,6 +12,7 @@ use crate::family::{Fitted, ModelFamily};
 
 /// Steps of a refit on all of a recording that was searched in part.
 const IN_FULL: usize = 8;
+
 /// What a search found.
 #[derive(Clone, Debug)]
 pub struct Found {

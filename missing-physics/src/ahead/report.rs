@@ -53,13 +53,14 @@ pub fn discover<F: ModelFamily + ?Sized>(
         return run.told(family, ahead, search.finish(climb));
     };
     let other_part = other.ahead_in_part();
-    let (second, second_climb) = run.begun(other, other_part.as_deref().unwrap_or(&*other_ahead));
+    let searched = other_part.as_deref().unwrap_or(&*other_ahead);
+    let (second, second_climb) = run.begun(other, searched);
     let better = settings.thresholds.better;
     if reading::nats(second_climb.top(), climb.top(), better) > nats {
         return run.told(other, &*other_ahead, second.finish(second_climb));
     }
     let found = search.finish(climb);
-    let fitter = Fitter::new(other, other_part.as_deref().unwrap_or(&*other_ahead));
+    let fitter = Fitter::new(other, searched);
     if !stop() && reading::needs_less(&found, other, &fitter.stopped_by(&stop), better) {
         let second = second.finish(second_climb);
         if reading::nats(second.top(), found.top(), better) > 0.0 {
@@ -117,10 +118,11 @@ impl Run<'_> {
         ahead: &dyn Ahead,
         mut found: Found,
     ) -> Discovery {
+        let thresholds = self.thresholds();
         if family.ahead_in_part().is_some() {
-            found.confirm(family, ahead, &self.thresholds());
+            found.confirm(family, ahead, &thresholds);
         }
-        found.judge(family, ahead, &self.thresholds());
+        found.judge(family, ahead, &thresholds);
         (self.tell)(&Event::Finishing);
         let mut discovery = Report { family, ahead, settings: self.settings, found }.discovery();
         discovery.notes.extend(family.reading());

@@ -144,16 +144,16 @@ impl<'a> Screening<'a> {
         let mut errors = with(&looks.iter().collect::<Vec<_>>(), &vec![1.0; looks.len()]);
         // What changes the errors beyond measure is looked at once more, gently: the first order is what is asked.
         let mut shares = vec![1.0; looks.len()];
-        let rough: Vec<usize> = (0..looks.len())
-            .filter(|&k| looks[k].amplitude.is_some() && self.size(&errors[k]) > ROUGH)
+        let sizes = errors.iter().map(|errors| self.size(errors));
+        let sizes = looks.iter().zip(sizes).enumerate();
+        let rough: Vec<(usize, f64)> = sizes
+            .filter(|(_, (look, size))| look.amplitude.is_some() && *size > ROUGH)
+            .map(|(k, (_, size))| (k, GENTLE / size))
             .collect();
-        for &k in &rough {
-            shares[k] = GENTLE / self.size(&errors[k]);
-        }
-        let again: Vec<&Look> = rough.iter().map(|k| &looks[*k]).collect();
-        let gently: Vec<f64> = rough.iter().map(|k| shares[*k]).collect();
-        for (k, gentle) in rough.iter().zip(with(&again, &gently)) {
-            errors[*k] = gentle;
+        let (again, gently): (Vec<&Look>, Vec<f64>) =
+            rough.iter().map(|(k, share)| (&looks[*k], *share)).unzip();
+        for ((k, share), gentle) in rough.iter().zip(with(&again, &gently)) {
+            (errors[*k], shares[*k]) = (gentle, *share);
         }
         let mut columns = errors.iter().zip(&shares).map(|(errors, share)| {
             let mut column = self.change(errors);
@@ -173,11 +173,14 @@ impl<'a> Screening<'a> {
 
     /// Root mean square of what a trial changes, in scales.
     fn size(&self, errors: &[f64]) -> f64 {
-        let cut = CUT * self.scale;
-        let change =
-            errors.iter().zip(&self.node.errors).map(|(e, old)| (e - old).clamp(-cut, cut));
-        let square: f64 = change.map(|change| change * change).sum();
+        let square: f64 = self.differences(errors).map(|change| change * change).sum();
         (square / errors.len().max(1) as f64).sqrt() / self.scale
+    }
+
+    /// What a trial changes in each error.
+    fn differences<'e>(&'e self, errors: &'e [f64]) -> impl Iterator<Item = f64> + 'e {
+        let cut = CUT * self.scale;
+        errors.iter().zip(&self.node.errors).map(move |(e, old)| (e - old).clamp(-cut, cut))
     }
 
     fn best<F: ModelFamily + ?Sized>(
@@ -212,10 +215,8 @@ impl<'a> Screening<'a> {
 
     /// What a trial changes, weighed and freed of what the model's own parameters do.
     fn change(&self, errors: &[f64]) -> Vec<f64> {
-        let cut = CUT * self.scale;
-        let change =
-            errors.iter().zip(&self.node.errors).map(|(e, old)| (e - old).clamp(-cut, cut));
-        let mut column: Vec<f64> = change.zip(&self.weight).map(|(c, w)| c * w).collect();
+        let change = self.differences(errors).zip(&self.weight);
+        let mut column: Vec<f64> = change.map(|(c, w)| c * w).collect();
         self.own.project_out(&mut column);
         column
     }

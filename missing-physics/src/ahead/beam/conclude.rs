@@ -142,10 +142,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .map(|set| Self::added(&base, set))
             .collect();
         let stopped = (self.stop)();
-        let top = rungs.last().unwrap_or(&base).clone();
+        let top = rungs.last().unwrap_or(&base);
         let p_values = costs.iter().map(|(_, cost, _)| beside.chance.p_value(cost.nats)).collect();
-        let places = local::places(self.ahead, &top, self.thresholds.local);
-        let complete = self.budget(&top) <= self.thresholds.complete && places.is_empty();
+        let places = local::places(self.ahead, top, self.thresholds.local);
+        let complete = self.budget(top) <= self.thresholds.complete && places.is_empty();
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(last);
         for decision in &mut decisions {
