@@ -1,6 +1,5 @@
 //! How a search runs and where its results go.
 
-use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -42,19 +41,24 @@ struct ThresholdArgs {
     /// Held-out log-likelihood that an effect must gain, in nats: higher finds less and errs less
     #[arg(long, value_name = "NATS", default_value_t = Thresholds::default().better, allow_negative_numbers = true, value_parser = positive)]
     better: f64,
-    /// Share of all that is explained that a further effect must explain, 0 to 1
+    /// Share of all that is explained that a further effect must explain, 0 to 1 (sets that differ by less are as good)
     #[arg(long, value_name = "SHARE", default_value_t = Thresholds::default().share, allow_negative_numbers = true, value_parser = share)]
     share: f64,
-    /// How near to the best a set of effects is as good, so that the plainest is taken: nats, or after a
-    /// comma a share of the gain, whichever is more
-    #[arg(long, value_name = "NATS[,SHARE]", default_value_t = AsGood::default(), allow_negative_numbers = true, value_parser = as_good)]
-    as_good: AsGood,
     /// A model is complete where it errs up to this many times as much as the sensors make it
     #[arg(long, value_name = "FACTOR", default_value_t = Thresholds::default().complete, allow_negative_numbers = true, value_parser = positive)]
     complete: f64,
+    /// A model is incomplete where it errs this many times as much as the sensors make it at some place or some time
+    #[arg(long, value_name = "FACTOR", default_value_t = Thresholds::default().local, allow_negative_numbers = true, value_parser = positive)]
+    local: f64,
+    /// Largest p-value of an effect: how often any candidate gains as much where the errors are shifted in time
+    #[arg(long, value_name = "P", default_value_t = Thresholds::default().chance, allow_negative_numbers = true, value_parser = rate)]
+    chance: f64,
     /// Sets of effects that are followed side by side: more finds more and takes longer
     #[arg(long, value_name = "N", default_value_t = Thresholds::default().beam, value_parser = count)]
     beam: usize,
+    /// Candidates that are fitted beside each set: more finds more and takes longer
+    #[arg(long, value_name = "N", default_value_t = Thresholds::default().fitted, value_parser = count)]
+    fitted: usize,
     /// Most effects to add
     #[arg(long, visible_alias = "most", value_name = "N", default_value_t = Thresholds::default().most)]
     most_effects: usize,
@@ -65,11 +69,12 @@ impl ThresholdArgs {
         Thresholds {
             better: self.better,
             share: self.share,
-            as_good: (self.as_good.nats, self.as_good.share),
             complete: self.complete,
+            local: self.local,
+            chance: self.chance,
             beam: self.beam,
+            fitted: self.fitted,
             most: self.most_effects,
-            ..Thresholds::default()
         }
     }
 }
@@ -77,26 +82,6 @@ impl ThresholdArgs {
 /// A time limit, or none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Limit(Option<Duration>);
-
-/// How near two sets are where they are as good.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct AsGood {
-    nats: f64,
-    share: f64,
-}
-
-impl Default for AsGood {
-    fn default() -> Self {
-        let (nats, share) = Thresholds::default().as_good;
-        Self { nats, share }
-    }
-}
-
-impl fmt::Display for AsGood {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(to, "{},{}", self.nats, self.share)
-    }
-}
 
 impl RunArgs {
     /// The engine's settings for the base model of these effects.
@@ -155,17 +140,6 @@ fn limit(text: &str) -> Result<Limit, String> {
     }
     let limit = seconds(text).map(|limit| Limit(Some(limit)));
     limit.map_err(|why| format!("{why}, or 'none'"))
-}
-
-fn as_good(text: &str) -> Result<AsGood, String> {
-    let wrong = || "it must be a number of nats, or one and a share of the gain: 6,0.02".to_owned();
-    let number = |text: &str| match text.trim().parse::<f64>() {
-        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
-        _ => Err(wrong()),
-    };
-    let (nats, share) = text.split_once(',').unwrap_or((text, "0"));
-    let (nats, share) = (number(nats)?, number(share)?);
-    if share < 1.0 { Ok(AsGood { nats, share }) } else { Err(wrong()) }
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -230,21 +204,22 @@ mod tests {
 
     #[test]
     fn every_threshold_can_be_set() {
-        let line =
-            "--better 50 --share 0.1 --as-good 3,0.01 --complete 2 --beam 1 --most-effects 2";
+        let line = "--better 50 --share 0.1 --complete 2 --local 3 --chance 0.01 --beam 1 \
+                    --fitted 4 --most-effects 2";
         let found = settings(&format!("{line} --time-limit none"));
         let thresholds = Thresholds {
             better: 50.0,
             share: 0.1,
-            as_good: (3.0, 0.01),
             complete: 2.0,
+            local: 3.0,
+            chance: 0.01,
             beam: 1,
+            fitted: 4,
             most: 2,
-            ..Thresholds::default()
         };
         assert_eq!((found.thresholds, found.most), (thresholds, 2));
         assert_eq!(found.time_limit, None);
-        assert_eq!(settings("--as-good 3 --most 1").thresholds.as_good, (3.0, 0.0));
+        assert_eq!(settings("--most 1").thresholds.most, 1);
     }
 
     #[test]
@@ -253,9 +228,10 @@ mod tests {
             "--better 0",
             "--better nan",
             "--share 1",
-            "--as-good -1",
-            "--as-good 1,2",
             "--complete inf",
+            "--local 0",
+            "--chance 2",
+            "--fitted 0",
             "--beam 0",
             "--time-limit 0",
         ] {

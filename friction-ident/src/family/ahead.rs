@@ -13,7 +13,7 @@ use crate::predictor::{Predictor, Wave};
 /// Effects with a period along the stroke.
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
-const MOST_SAMPLES: usize = 12_000;
+const MOST_SAMPLES: usize = 8_000;
 /// Samples on which the trials of a term are ranked.
 const RANKED_ON: usize = 3_000;
 /// Starts of a second body that are fitted: its valleys are narrow.
@@ -134,6 +134,11 @@ impl Ahead for View<'_> {
 
     fn budget(&self) -> f64 {
         self.ahead.predictor.budget()
+    }
+
+    fn share(&self) -> f64 {
+        let all = self.family.ahead.as_ref().unwrap_or(self.ahead);
+        self.ahead.instants.len() as f64 / all.instants.len() as f64
     }
 
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {

@@ -157,15 +157,19 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             let (needed, costs) = self.prune(&climb, best);
             let last = self.plainest(needed);
             let beside = self.beside(&last);
-            let by_chance = |cost: f64| beside.chance.p_value(cost) > self.thresholds.chance;
-            let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1.nats))
-            else {
+            let by_chance = |cost| self.p_value(&beside, cost) > self.thresholds.chance;
+            let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1)) else {
                 return self.conclude(climb, &last, costs, beside);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));
             self.note(size, without, &last, cost, Outcome::Dropped, "chance gains as much");
             best = without.clone();
         }
+    }
+
+    /// Chance of as large a difference on all of the recording.
+    fn p_value(&self, screened: &Screened, difference: Difference) -> f64 {
+        screened.chance.p_value(difference.nats / self.ahead.share())
     }
 
     /// The candidates beside a model, with what they would gain by chance.
@@ -183,13 +187,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         for (place, from) in climb.beam.iter().enumerate() {
             let (children, screened) = self.expand(&climb.base, from, size, place == 0);
             if place == 0 {
+                let gains = children.iter().map(|child| self.comparison.compare(from, child));
+                least = gains.map(|gain| self.p_value(&screened, gain)).fold(1.0, f64::min);
                 climb.ranking.push(self.ranked(from, &children, screened));
             }
             for child in children {
                 let gain = self.comparison.compare(from, &child);
-                if let Some(ranked) = climb.ranking.last().filter(|_| place == 0) {
-                    least = least.min(ranked.chance.p_value(gain.nats));
-                }
                 let limited = self.at_limit(&climb.base, &child);
                 let limited = limited
                     .map(|parameter| format!("{parameter} ended at the limit of its search"));
@@ -268,10 +271,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let least = if size == 1 {
             PROMISING
         } else {
-            0.5 * self
-                .thresholds
-                .better
-                .max(self.thresholds.share * self.comparison.compare(base, from).nats)
+            0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
         };
         let most = if size == 1 {
             self.thresholds.fitted

@@ -1,5 +1,7 @@
 //! What a search found, brought to all of the recording and judged.
 
+use rayon::prelude::*;
+
 use super::chance::Chance;
 use super::compare::{Comparison, Difference};
 use super::decision::Decision;
@@ -32,6 +34,8 @@ pub struct Found {
     pub ranking: Vec<Ranked>,
     /// Chance of a gain as large as what the last model would lose without it, for each effect.
     pub p_values: Vec<f64>,
+    /// What any candidate gains beside the last model where the errors are shifted in time.
+    pub chance: Chance,
     /// The candidates beside the last model, to first order.
     pub last_screening: Vec<Promise>,
     /// Whether the last model leaves no more than the sensors make.
@@ -54,42 +58,61 @@ impl Found {
         (self.rungs.last().unwrap_or(&self.base), self.added.len())
     }
 
-    /// Brings what was found on a part to all of the recording: every rung is refitted there and compared anew;
-    /// rungs from the first one on that does not hold are taken back.
+    /// Brings what was found on a part to all of the recording: every rung is refitted there, and what gains too little
+    /// or no more than chance goes.
     pub fn confirm<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
-        let whole = |node: &Node| {
-            let setting = fit::best_setting(ahead, &node.model);
-            Fitter::new(family, ahead).fit(node.model.clone(), setting, IN_FULL)
-        };
         let comparison = Comparison::new(family, ahead);
-        self.base = whole(&self.base);
-        let mut held: Vec<Node> = Vec::new();
-        let mut gains = Vec::new();
-        for node in &self.rungs {
-            let node = whole(node);
-            let gain = comparison.compare(held.last().unwrap_or(&self.base), &node);
-            if gain.nats <= thresholds.better {
-                break;
-            }
-            gains.push(gain);
-            held.push(node);
-        }
-        let count = held.len();
-        if count < self.rungs.len() {
-            let names = &family.terms()[self.added[count]].name;
+        let fitter = Fitter::new(family, ahead);
+        let whole = |model: &Fitted| {
+            let setting = fit::best_setting(ahead, model);
+            fitter.fit(model.clone(), setting, IN_FULL)
+        };
+        let main = |t: usize| family.form_of(t).unwrap_or(t);
+        let without = |node: &Node, term: usize| {
+            let form = node.model.terms.iter().find(|t| main(**t) == main(term));
+            form.map(|form| whole(&node.model.without(family, *form)))
+        };
+        self.base = whole(&self.base.model);
+        self.rungs = self.rungs.par_iter().map(|rung| whole(&rung.model)).collect();
+        while let Some(top) = self.rungs.last() {
+            let last = self.added.len() - 1;
+            let below = last.checked_sub(1).map_or(&self.base, |k| &self.rungs[k]);
+            let costs = self.added.par_iter().enumerate().map(|(k, term)| {
+                let without = if k == last { None } else { without(top, *term) };
+                comparison.compare(without.as_ref().unwrap_or(below), top)
+            });
+            self.costs = costs.collect();
+            self.p_values = self.costs.iter().map(|c| self.chance.p_value(c.nats)).collect();
+            let each = self.costs.iter().zip(&self.p_values).enumerate();
+            let idle = each
+                .filter(|(_, (cost, p))| cost.nats < thresholds.better || **p > thresholds.chance)
+                .min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
+            let Some((idle, _)) = idle else { break };
+            let term = self.added.remove(idle);
             self.notes.push(format!(
-                "A search on parts of the recording found {names} besides; on all of it that gains too little."
+                "A search on parts of the recording found {} besides; on all of it that gains too little.",
+                family.terms()[term].name
             ));
-            self.costs.truncate(count);
+            let mut rungs = std::mem::take(&mut self.rungs);
+            let above = rungs.split_off(idle + 1);
+            rungs.pop();
+            rungs.extend(
+                above.par_iter().filter_map(|rung| without(rung, term)).collect::<Vec<_>>(),
+            );
+            self.rungs = rungs;
             self.as_good.clear();
         }
-        self.added.truncate(count);
-        (self.rungs, self.gains) = (held, gains);
+        if self.rungs.is_empty() {
+            self.costs.clear();
+            self.p_values.clear();
+        }
+        let before = std::iter::once(&self.base).chain(&self.rungs);
+        self.gains = before.zip(&self.rungs).map(|(a, b)| comparison.compare(a, b)).collect();
         let top = self.rungs.last().unwrap_or(&self.base);
         self.places = local::places(ahead, top, thresholds.local);
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();

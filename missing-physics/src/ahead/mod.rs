@@ -44,6 +44,11 @@ pub trait Ahead: Sync {
     /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
     fn instants(&self) -> &[(f64, usize)];
 
+    /// Share of the recording's errors that these are: where only a part of it is searched an effect gains as much less.
+    fn share(&self) -> f64 {
+        1.0
+    }
+
     /// What is wrong with the recording itself, in words: with it no model is complete.
     fn faults(&self) -> Option<String> {
         None

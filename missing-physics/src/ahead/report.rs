@@ -55,7 +55,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let other_part = other.ahead_in_part();
     let searched = other_part.as_deref().unwrap_or(&*other_ahead);
     let (second, second_climb) = run.begun(other, searched);
-    let better = settings.thresholds.better;
+    let better = settings.thresholds.in_part(searched.share()).better;
     if reading::nats(second_climb.top(), climb.top(), better) > nats {
         return run.told(other, &*other_ahead, second.finish(second_climb));
     }
@@ -99,7 +99,7 @@ impl Run<'_> {
                     && ![term, main].iter().any(|t| excluded.contains(t))
             })
             .collect();
-        let thresholds = self.thresholds();
+        let thresholds = self.thresholds().in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
         let base = search.base(start.fit.model);
         let climb = search.begin(base);

@@ -7,8 +7,6 @@ pub struct Thresholds {
     pub better: f64,
     /// Share of all that is explained that an effect must explain.
     pub share: f64,
-    /// Sets this near to the best of their size are as good: nats, or this share of the gain.
-    pub as_good: (f64, f64),
     /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
     pub complete: f64,
     /// A model that errs more than this many times what the sensors make at some place, at some time or in isolated
@@ -25,12 +23,24 @@ pub struct Thresholds {
     pub most: usize,
 }
 
+impl Thresholds {
+    /// The same where only this share of a recording is searched: there an effect gains as much less.
+    #[must_use]
+    pub fn in_part(self, share: f64) -> Self {
+        Self { better: share * self.better, ..self }
+    }
+
+    /// By how many nats two models must differ where one of them gains `nats` over what came before.
+    pub fn clear(&self, nats: f64) -> f64 {
+        self.better.max(self.share * nats)
+    }
+}
+
 impl Default for Thresholds {
     fn default() -> Self {
         Self {
             better: 80.0,
             share: 0.02,
-            as_good: (50.0, 0.02),
             complete: 1.3,
             local: 2.0,
             chance: 0.05,

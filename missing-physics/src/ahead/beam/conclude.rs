@@ -17,8 +17,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         for (size, sets) in climb.nodes.iter().enumerate().skip(1) {
             let top = &sets[0];
             let gain = self.comparison.compare(&best, top).nats;
-            let (nats, share) = self.thresholds.as_good;
-            let near = nats.max(share * gain);
+            let near = self.thresholds.clear(gain);
             let simplest = sets
                 .iter()
                 .take(6)
@@ -35,9 +34,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 simplest.clone()
             };
             let gain = self.comparison.compare(&best, &set);
-            let all = self.comparison.compare(base, &set).nats.max(1e-9);
-            let taken = gain.nats > self.thresholds.better
-                && (size == 1 || gain.nats / all > self.thresholds.share);
+            let all = self.comparison.compare(base, &set).nats;
+            let taken = gain.nats > self.thresholds.clear(if size == 1 { 0.0 } else { all });
             let outcome = if taken { Outcome::Added } else { Outcome::TooLittle };
             let reason = format!("the best set of {size}");
             let from = best.clone();
@@ -143,7 +141,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .collect();
         let stopped = (self.stop)();
         let top = rungs.last().unwrap_or(&base);
-        let p_values = costs.iter().map(|(_, cost, _)| beside.chance.p_value(cost.nats)).collect();
+        let p_values = costs.iter().map(|(_, cost, _)| self.p_value(&beside, *cost)).collect();
         let places = local::places(self.ahead, top, self.thresholds.local);
         let complete = self.budget(top) <= self.thresholds.complete && places.is_empty();
         let mut decisions = std::mem::take(&mut self.decisions);
@@ -163,6 +161,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             as_good,
             ranking: climb.ranking,
             p_values,
+            chance: beside.chance,
             last_screening: beside.promises,
             complete,
             places,
