@@ -183,12 +183,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn grow(&mut self, climb: &mut Climb) {
         let size = climb.nodes.len();
         let mut next: Vec<(Node, Difference)> = Vec::new();
-        let mut least = 1.0f64;
+        let mut least = None;
         for (place, from) in climb.beam.iter().enumerate() {
             let (children, screened) = self.expand(&climb.base, from, size, place == 0);
             if place == 0 {
                 let gains = children.iter().map(|child| self.comparison.compare(from, child));
-                least = gains.map(|gain| self.p_value(&screened, gain)).fold(1.0, f64::min);
+                least = gains.map(|gain| self.p_value(&screened, gain)).reduce(f64::min);
                 climb.ranking.push(self.ranked(from, &children, screened));
             }
             for child in children {
@@ -226,7 +226,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
         // A size that was cut short says nothing: the best of it may not have been fitted. Nor does one where chance
         // gains as much as the best.
-        let by_chance = least > HOPELESS;
+        let by_chance = least.is_some_and(|p| p > HOPELESS);
         if ranked.is_empty() || by_chance || (self.stop)() || self.thresholds.most == 0 {
             climb.ended = true;
             return;
