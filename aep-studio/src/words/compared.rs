@@ -97,6 +97,7 @@ pub fn outcome(discovery: &Discovery, decision: &Decision, thresholds: &Threshol
         Outcome::Worse => "another is better".to_owned(),
         Outcome::OtherShape => "another shape does it".to_owned(),
         Outcome::NotIdentifiable => "not identifiable".to_owned(),
+        Outcome::Rival => "no effect, but does as much".to_owned(),
         Outcome::Dropped => match dropped(decision).as_slice() {
             [] => "dropped".to_owned(),
             effects => format!("{} dropped", effects.join(" + ")),
@@ -205,6 +206,7 @@ fn refusal(discovery: &Discovery, decision: &Decision, thresholds: &Thresholds) 
         }
         Outcome::NotIdentifiable => format!("{best}, but the data do not determine it"),
         Outcome::OtherShape => format!("{best}, which another shape of an effect does, too"),
+        Outcome::Rival => format!("{name}, which stands for no effect, gains {gain} nats"),
         _ if enough && discovery.added.is_empty() => {
             format!("nothing was to be added: {name} gains {gain} nats, which is enough")
         }
@@ -278,6 +280,7 @@ mod tests {
             ("worse", "another is better"),
             ("other_shape", "another shape does it"),
             ("not_identifiable", "not identifiable"),
+            ("rival", "no effect, but does as much"),
             ("dropped", "dropped"),
         ];
         for (name, words) in words {

@@ -28,6 +28,7 @@ pub mod input_delay;
 pub mod load_friction;
 pub mod motor_gain;
 pub mod offset;
+pub mod over_time;
 pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;

@@ -3,13 +3,19 @@
 use std::sync::{Arc, Mutex};
 
 use aep_core::Scale;
-use missing_physics::ahead::{Ahead, Columns, Trial, trials};
+use missing_physics::ahead::{Ahead, Columns, Rival, Trial, trials};
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
 use crate::model::Model;
 use crate::predictor::{Predictor, Wave};
 
+/// What stands for no effect, what it is, and the effect that is one shape of it.
+const RIVALS: [(&str, &str, Option<&str>); 3] = [
+    ("friction-over-time", "a friction level that varies freely with time", Some("drift")),
+    ("friction-step", "a friction level that changes at one moment", Some("drift")),
+    ("force-over-time", "a force that varies freely with time", None),
+];
 /// Effects with a period along the stroke.
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
@@ -20,6 +26,8 @@ const RANKED_ON: usize = 3_000;
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
 const KEPT: usize = 4;
+/// Trial moments of a step.
+const MOMENTS: usize = 40;
 /// Fewest periods in a stroke: fewer are no ripple but a profile.
 const LEAST_PERIODS: f64 = 3.0;
 
@@ -107,6 +115,7 @@ impl FrictionFamily {
         let shapes: Vec<&Parameter> =
             about.parameters.iter().filter(|p| p.role == Role::Shape).collect();
         let counts: &[usize] = match shapes.len() {
+            1 if about.name == "friction-step" => &[MOMENTS],
             1 => &[12],
             2 if about.name == "flexible-coupling" => &[12, 1],
             2 if about.name == "presliding:maxwell-slip" => &[6, 1],
@@ -211,6 +220,14 @@ impl Ahead for View<'_> {
 
     fn relatives(&self, model: &Fitted) -> Vec<Fitted> {
         self.family.related_second_bodies(model)
+    }
+
+    fn rivals(&self) -> Vec<Rival> {
+        let term = |name: &str| self.family.terms.iter().position(|term| term.name == name);
+        let rival = |(name, words, kin): &(&str, &'static str, Option<&str>)| {
+            Some(Rival { term: term(name)?, words, kin: kin.and_then(term) })
+        };
+        RIVALS.iter().filter_map(rival).collect()
     }
 
     fn vanishes(&self, model: &Fitted) -> Option<String> {

@@ -38,6 +38,7 @@ pub use preparation::{PreparationError, Prepared};
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
+use crate::effects::over_time::{self, RIVALS};
 use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
 
@@ -111,6 +112,7 @@ impl FrictionFamily {
         let main = options.library.effects().iter().copied().filter(|effect| effect.suits(axis));
         let effects: Vec<&'static dyn Effect> = main
             .flat_map(|effect| std::iter::once(effect).chain(effect.forms().iter().copied()))
+            .chain(RIVALS)
             .collect();
         let limits = limits::Limits::of(&prepared, axis, stroke);
         let mut terms = vec![limits.mass()];
@@ -226,6 +228,8 @@ impl FrictionFamily {
         match name {
             "start" => Some(self.stroke.0),
             "end" => Some(self.stroke.1),
+            "begin" => self.recording.time().first().copied(),
+            "finish" => self.recording.time().last().copied(),
             "v_high" => Some(self.top_speed),
             "x_0" => Some(f64::midpoint(self.stroke.0, self.stroke.1)),
             _ => None,
@@ -421,7 +425,8 @@ impl ModelFamily for FrictionFamily {
         let Some(effect) = term.checked_sub(1).map(|index| self.effects[index]) else {
             return false;
         };
-        if INVISIBLE.contains(&effect.about().name) {
+        let name = effect.about().name;
+        if INVISIBLE.contains(&name) || RIVALS.iter().any(|rival| rival.about().name == name) {
             return false;
         }
         self.model(model).and_then(|plant| plant.with_effect(effect)).is_ok()
@@ -468,7 +473,12 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn describe(&self, term: usize, values: &[f64]) -> String {
-        words::describe(&self.terms[term], values)
+        let about = &self.terms[term];
+        let unit = about.parameters.first().map_or("", |parameter| &parameter.unit);
+        let time = self.recording.time();
+        let span = time.first().copied().zip(time.last().copied());
+        let rival = span.and_then(|span| over_time::words(&about.name, values, span, unit));
+        rival.unwrap_or_else(|| words::describe(about, values))
     }
 
     fn experiment(&self, terms: &[String]) -> String {

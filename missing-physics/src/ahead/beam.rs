@@ -5,6 +5,7 @@
 //! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
 
 mod conclude;
+mod rivals;
 mod shape;
 
 use std::collections::BTreeSet;
@@ -153,13 +154,21 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             self.grow(&mut climb);
         }
         let mut best = self.size(&climb);
+        let mut rival = None;
         loop {
             let (needed, costs) = self.prune(&climb, best);
             let last = self.plainest(needed);
+            if rival.is_none()
+                && let Some((without, text)) = self.rivalled(&climb, &last)
+            {
+                rival = Some(text);
+                best = without;
+                continue;
+            }
             let beside = self.beside(&last);
             let by_chance = |cost| self.p_value(&beside, cost) > self.thresholds.chance;
             let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1)) else {
-                return self.conclude(climb, &last, costs, beside);
+                return self.conclude(climb, &last, costs, beside, rival);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));
             self.note(size, without, &last, cost, Outcome::Dropped, "chance gains as much");

@@ -20,6 +20,8 @@ pub enum Outcome {
     NotIdentifiable,
     /// It was no longer needed beside the others.
     Dropped,
+    /// It stands for no effect, but does what the effects that it was compared with do.
+    Rival,
 }
 
 /// One comparison.

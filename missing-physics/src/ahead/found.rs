@@ -38,6 +38,8 @@ pub struct Found {
     pub chance: Chance,
     /// The candidates beside the last model, to first order.
     pub last_screening: Vec<Promise>,
+    /// What stands for no effect, but does what effects would do.
+    pub rival: Option<String>,
     /// Whether the last model leaves no more than the sensors make.
     pub complete: bool,
     /// Where what is left lies, in words, the largest first.
@@ -113,8 +115,14 @@ impl Found {
         }
         let before = std::iter::once(&self.base).chain(&self.rungs);
         self.gains = before.zip(&self.rungs).map(|(a, b)| comparison.compare(a, b)).collect();
+        self.place(ahead, thresholds);
+    }
+
+    /// Where the last model fails, and whether it does at all.
+    pub fn place(&mut self, ahead: &dyn Ahead, thresholds: &Thresholds) {
         let top = self.rungs.last().unwrap_or(&self.base);
         self.places = local::places(ahead, top, thresholds.local);
+        self.places.splice(0..0, self.rival.clone());
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 

@@ -74,6 +74,11 @@ pub trait Ahead: Sync {
         Vec::new()
     }
 
+    /// What stands for no effect, but may predict as well as effects that are not there.
+    fn rivals(&self) -> Vec<Rival> {
+        Vec::new()
+    }
+
     /// Why the term that was added last is none as it was fitted (a gap of no width), in words.
     fn vanishes(&self, _model: &Fitted) -> Option<String> {
         None
@@ -106,6 +111,18 @@ pub trait Ahead: Sync {
     fn flexible(&self, _model: &Fitted, _term: usize) -> Option<Fitted> {
         None
     }
+}
+
+/// A term that stands for no effect (a friction level that varies freely with time): where it predicts as well as the
+/// effects that were found the recording does not show them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rival {
+    /// The term. Its values are amplitudes, 0 where there is nothing.
+    pub term: usize,
+    /// What it is, in words.
+    pub words: &'static str,
+    /// The effect that is one shape of it.
+    pub kin: Option<usize>,
 }
 
 /// A few columns for each of many trials.

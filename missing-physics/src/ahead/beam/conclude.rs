@@ -4,7 +4,6 @@ use super::{Climb, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::decision::Outcome;
 use crate::ahead::found::Found;
-use crate::ahead::local;
 use crate::ahead::node::Node;
 use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
@@ -107,6 +106,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         last: &Node,
         costs: Vec<(usize, Difference, Node)>,
         beside: Screened,
+        rival: Option<String>,
     ) -> Found {
         let base = climb.base.clone();
         // Forms may have changed since the costs were taken.
@@ -140,10 +140,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .map(|set| Self::added(&base, set))
             .collect();
         let stopped = (self.stop)();
-        let top = rungs.last().unwrap_or(&base);
         let p_values = costs.iter().map(|(_, cost, _)| self.p_value(&beside, *cost)).collect();
-        let places = local::places(self.ahead, top, self.thresholds.local);
-        let complete = self.budget(top) <= self.thresholds.complete && places.is_empty();
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(last);
         for decision in &mut decisions {
@@ -152,7 +149,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 decision.outcome = if stands { Outcome::Added } else { Outcome::Worse };
             }
         }
-        Found {
+        let mut found = Found {
             base,
             rungs,
             added,
@@ -163,12 +160,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             p_values,
             chance: beside.chance,
             last_screening: beside.promises,
-            complete,
-            places,
+            rival,
+            complete: false,
+            places: Vec::new(),
             notes: std::mem::take(&mut self.notes),
             decisions,
             untried: self.untried.into_iter().collect(),
             stopped,
-        }
+        };
+        found.place(self.ahead, &self.thresholds);
+        found
     }
 }

@@ -1,0 +1,222 @@
+//! What varies freely with time: no effect, but what an effect must be told from.
+//!
+//! A friction level or a force that may be anything at every moment explains nothing. Where it predicts as well as
+//! effects do that were found, the recording does not show those effects: see [`missing_physics::ahead::Rival`].
+
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::axis::Quantity;
+use missing_physics::quantity::quantity;
+
+/// Knots over the recording; straight between them, 0 at the first one, so that nothing competes with `coulomb` or
+/// `offset`.
+const KNOTS: usize = 24;
+const FREE: usize = KNOTS - 1;
+
+/// A friction level over time.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionOverTime;
+
+/// A force over time.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceOverTime;
+
+/// A friction level that changes at one moment.
+#[derive(Clone, Copy, Debug)]
+pub struct FrictionStep;
+
+/// What no effect of the library may be mistaken for.
+pub static RIVALS: [&dyn Effect; 3] = [&FrictionOverTime, &FrictionStep, &ForceOverTime];
+
+/// Share of the recording over which a step rises: a fit has to feel where it is.
+const RISE: f64 = 0.005;
+
+const NAMES: [&str; FREE] = [
+    "k_1", "k_2", "k_3", "k_4", "k_5", "k_6", "k_7", "k_8", "k_9", "k_10", "k_11", "k_12", "k_13",
+    "k_14", "k_15", "k_16", "k_17", "k_18", "k_19", "k_20", "k_21", "k_22", "k_23",
+];
+
+const fn moment(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
+    Parameter::fixed(name, meaning, Quantity::Time, (-1e9, 1e9), default)
+}
+
+const fn parameters() -> [Parameter; KNOTS + 1] {
+    let mut all = [BEGIN; KNOTS + 1];
+    all[1] = END;
+    let mut k = 0;
+    while k < FREE {
+        all[k + 2] = Parameter::signed(
+            NAMES[k],
+            "what is there beyond the begin, at knot k of 24",
+            Quantity::Force,
+            100.0,
+            if k == 0 { 1.0 } else { 0.0 },
+        );
+        k += 1;
+    }
+    all
+}
+
+static PARAMETERS: [Parameter; KNOTS + 1] = parameters();
+
+static FRICTION: About = About {
+    name: "friction-over-time",
+    title: "friction level that varies freely with time",
+    equation: "k(t) s, k straight between 24 knots over the recording, k = 0 at its begin",
+    parameters: &PARAMETERS,
+    slots: &[Slot::FrictionLevel],
+    shows: "(residual x sign of velocity) against time",
+    reference: "L. Ljung, System Identification, 1999, ch. 10.3 (time-varying parameters)",
+};
+
+static FORCE: About = About {
+    name: "force-over-time",
+    title: "force that varies freely with time",
+    equation: "k(t), straight between 24 knots over the recording, k = 0 at its begin",
+    parameters: &PARAMETERS,
+    slots: &[Slot::SmoothForce],
+    shows: "the residual against time",
+    reference: "L. Ljung, System Identification, 1999, ch. 10.3 (time-varying parameters)",
+};
+
+const BEGIN: Parameter = moment("begin", "begin of the recording", 0.0);
+const END: Parameter = moment("finish", "end of the recording", 1.0);
+
+static STEP: About = About {
+    name: "friction-step",
+    title: "friction level that changes at one moment",
+    equation: "dF s from the share u of the recording on",
+    parameters: &[
+        BEGIN,
+        END,
+        Parameter::signed("dF", "change of the level", Quantity::Force, 100.0, 1.0),
+        Parameter::shape(
+            "u",
+            "moment as a share of the recording",
+            Quantity::One,
+            (0.02, 0.98),
+            0.5,
+        )
+        .linear(),
+    ],
+    slots: &[Slot::FrictionLevel],
+    shows: "(residual x sign of velocity) against time: a step",
+    reference: "M. Basseville, I. V. Nikiforov, Detection of Abrupt Changes, 1993",
+};
+
+impl Effect for FrictionStep {
+    fn about(&self) -> &'static About {
+        &STEP
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
+        for (i, level) in level.iter_mut().enumerate() {
+            let (begin, end) = (p.get(0)[i], p.get(1)[i]);
+            let after = (m.time[i] - begin) / (end - begin) - p.get(3)[i];
+            *level += p.get(2)[i] * (after / RISE + 0.5).clamp(0.0, 1.0);
+        }
+    }
+}
+
+impl Effect for FrictionOverTime {
+    fn about(&self) -> &'static About {
+        &FRICTION
+    }
+
+    fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
+        for (i, level) in level.iter_mut().enumerate() {
+            *level += at(p, m, i);
+        }
+    }
+}
+
+impl Effect for ForceOverTime {
+    fn about(&self) -> &'static About {
+        &FORCE
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        for (i, force) in out.force.iter_mut().enumerate() {
+            *force += at(p, m, i);
+        }
+    }
+}
+
+/// The value in lane `i`.
+fn at(p: Parameters<'_>, m: &Motion<'_>, i: usize) -> f64 {
+    let (begin, end) = (p.get(0)[i], p.get(1)[i]);
+    let place = ((m.time[i] - begin) / (end - begin)).clamp(0.0, 1.0) * FREE as f64;
+    let knot = (place as usize).min(FREE - 1);
+    let value = |k: usize| if k == 0 { 0.0 } else { p.get(k + 1)[i] };
+    let part = place - knot as f64;
+    (1.0 - part) * value(knot) + part * value(knot + 1)
+}
+
+/// What a rival was found to be, in words; `span` are begin and end of the recording. Nothing for an effect.
+pub fn words(name: &str, values: &[f64], span: (f64, f64), unit: &str) -> Option<String> {
+    let moment = |share: f64| quantity(span.0 + (span.1 - span.0) * share, "s");
+    match (name, values) {
+        ("friction-step", [change, share]) => {
+            Some(format!("it changes by {} at {}", quantity(*change, unit), moment(*share)))
+        }
+        ("friction-over-time" | "force-over-time", _) => {
+            let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
+            let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
+            let high = knots.iter().fold(f64::NEG_INFINITY, |high, v| high.max(*v));
+            let jump = |k: &usize| (knots[k + 1] - knots[*k]).abs();
+            let most = (0..FREE).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
+            let at = |k: usize| moment(k as f64 / FREE as f64);
+            Some(format!(
+                "it varies over a range of {}, most of all between {} and {}",
+                quantity(high - low, unit),
+                at(most),
+                at(most + 1)
+            ))
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Point, level, smooth};
+    use super::*;
+
+    #[test]
+    fn it_is_straight_between_the_knots_and_level_beyond() {
+        let mut p = vec![10.0, 33.0];
+        p.extend((1..=FREE).map(|k| (k as f64).sin()));
+        for (time, exact) in [
+            (0.0, 0.0),
+            (10.0, 0.0),
+            (10.5, 0.5 * 1f64.sin()),
+            (12.25, 0.75 * 2f64.sin() + 0.25 * 3f64.sin()),
+            (33.0, 23f64.sin()),
+            (40.0, 23f64.sin()),
+        ] {
+            let point = Point { time, ..Point::at(0.0, 0.1) };
+            assert!((level(&FrictionOverTime, &p, point) - exact).abs() < 1e-12, "{time}");
+            assert!((smooth(&ForceOverTime, &p, point).0 - exact).abs() < 1e-12, "{time}");
+        }
+    }
+
+    #[test]
+    fn words_say_how_much_and_when() {
+        let mut values = vec![0.0; FREE];
+        values[10..].fill(-1.7);
+        let told = |name, values| words(name, values, (0.0, 23.0), "N");
+        let free = "it varies over a range of 1.7 N, most of all between 10 s and 11 s";
+        assert_eq!(told("friction-over-time", &values).unwrap(), free);
+        let step = "it changes by -1.7 N at 11.5 s";
+        assert_eq!(told("friction-step", &[-1.7, 0.5]).unwrap(), step);
+        assert_eq!(told("stribeck", &[1.0]), None);
+    }
+
+    #[test]
+    fn a_step_is_there_from_its_moment_on() {
+        let p = [10.0, 30.0, -1.5, 0.5];
+        for (time, exact) in [(0.0, 0.0), (19.9, 0.0), (20.0, -0.75), (20.1, -1.5), (40.0, -1.5)] {
+            let point = Point { time, ..Point::at(0.0, 0.1) };
+            assert!((level(&FrictionStep, &p, point) - exact).abs() < 1e-9, "{time}");
+        }
+    }
+}
