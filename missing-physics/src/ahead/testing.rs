@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::{Ahead, Trial, trials};
+use super::{Ahead, Rival, Trial, trials};
 use crate::family::{
     Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term as About,
 };
@@ -39,6 +39,9 @@ pub const PUSH: usize = 6;
 /// A wave that comes a little later: what the sensor shows hardly tells it from one.
 pub const TWIN: usize = 7;
 
+/// No effect: a wave less a part of a beat.
+pub const RIVAL: usize = 8;
+
 /// Limits of the frequency of a tone, rad/s.
 pub const TONES: (f64, f64) = (2.0, 8.0);
 
@@ -62,6 +65,7 @@ fn input(term: usize, values: &[f64], t: f64) -> f64 {
         BOTH => wave(t) + beat(t) + rest(t),
         TONE => (values[1] * t).sin(),
         TWIN => wave(t - 2e-4),
+        RIVAL => wave(t) - 0.4 * beat(t),
         BENT => return values[0] * wave(t) + values[1] * wave(t).powi(2),
         _ => (0.06 * t * t + 2.0 * t).sin(),
     };
@@ -137,6 +141,7 @@ impl Plant {
             about("wave:bent", -10.0, Some(bend)),
             about("push", 0.0, None),
             about("twin", -10.0, None),
+            about("rival", -10.0, None),
         ];
         let coordinate = Coordinate {
             name: "time".into(),
@@ -231,6 +236,9 @@ impl Ahead for Plant {
         let size = model.values[model.range(self, place).start];
         Some(model.without(self, WAVE).with(BENT, &[size, 0.0]))
     }
+    fn rivals(&self) -> Vec<Rival> {
+        vec![Rival { term: RIVAL, words: "a wave less a beat", kin: Some(PUSH) }]
+    }
 }
 
 impl ModelFamily for Plant {
@@ -263,7 +271,7 @@ impl ModelFamily for Plant {
     }
     fn joins(&self, model: &Fitted, term: usize) -> bool {
         let main = |t: usize| self.form_of(t).unwrap_or(t);
-        model.terms.iter().all(|t| main(*t) != main(term))
+        term != RIVAL && model.terms.iter().all(|t| main(*t) != main(term))
     }
     fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
         Some(Box::new(Borrowed(self)))
@@ -297,5 +305,8 @@ impl Ahead for Borrowed<'_> {
     }
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
         self.0.flexible(model, term)
+    }
+    fn rivals(&self) -> Vec<Rival> {
+        self.0.rivals()
     }
 }

@@ -31,53 +31,54 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     ) -> Option<(Node, String)> {
         let base = &climb.base;
         let added = Self::added(base, last);
-        let gain = self.comparison.compare(base, last).nats;
-        let clear = self.thresholds.clear(gain);
-        // Where it does what takes several effects it need not be better.
-        let needed = if added.len() > 1 { -clear } else { clear };
         let promised = screen(self.family, self.ahead, base, &[rival.term], false);
         let start = promised.promises.into_iter().next()?;
         if (self.stop)() || start.gain < PROMISED * self.thresholds.better {
             return None;
         }
         let free = self.refit(start.starts.first()?, base.setting, STEPS.2);
-        let by = self.comparison.compare(last, &free);
-        let stands = by.nats <= needed;
-        let outcome = if stands { Outcome::Worse } else { Outcome::Rival };
-        self.note(added.len(), &free, last, by, outcome, rival.words);
-        if stands {
+        // Of more effects some may be needed beside it.
+        if added.len() <= 2 && !self.does_as_much(last, &free, added.len(), rival) {
             return None;
         }
-        let (kept, beside) = self.needed_beside(&added, last, &free, rival);
-        let kin = added.iter().copied().find(|t| rival.kin == Some(self.main(*t)));
-        let kin = kin.filter(|kin| {
-            let alone = self.only(base, last, &[kept.as_slice(), &[*kin]].concat());
-            self.comparison.compare(&alone, &beside).nats <= clear
-        });
-        let kept: Vec<usize> =
-            added.iter().copied().filter(|t| kept.contains(t) || kin == Some(*t)).collect();
+        let (mut kept, beside) = self.needed_beside(&added, last, &free, rival);
+        let gone = added.len() - kept.len();
+        if !added.is_empty() && (gone == 0 || !self.does_as_much(last, &beside, gone, rival)) {
+            return None;
+        }
+        if let Some(kin) = added.iter().copied().find(|t| rival.kin == Some(self.main(*t))) {
+            let alone = self.only(base, last, &[kept.as_slice(), &[kin]].concat());
+            let clear = self.thresholds.clear(self.comparison.compare(base, &beside).nats);
+            if self.comparison.compare(&alone, &beside).nats <= clear {
+                kept.push(kin);
+            }
+        }
         if !added.is_empty() && kept.len() == added.len() {
             return None;
         }
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
-        let size = self.size_of(&free, rival);
         let gone = added.iter().filter(|t| !kept.contains(t));
         let gone: Vec<&str> = gone.map(|t| self.family.terms()[*t].name.as_str()).collect();
-        let text = if gone.is_empty() {
-            format!(
-                "{} lowers the prediction error by {:.0} nats: {size}.",
-                capital(rival.words),
-                by.nats
-            )
+        let nats = self.comparison.compare(last, &beside).nats;
+        let size = self.family.describe(rival.term, &self.values(&beside, rival));
+        let does = if gone.is_empty() {
+            format!("lowers the prediction error by {nats:.0} nats")
         } else {
-            format!(
-                "{} does what {} would do ({:+.0} nats): {size}. Why, this recording does not show.",
-                capital(rival.words),
-                gone.join(" + "),
-                by.nats
-            )
+            format!("does what {} would do ({nats:+.0} nats)", gone.join(" + "))
         };
-        Some((result, text))
+        let words = capital(rival.words);
+        Some((result, format!("{words} {does}: {size}. Why, this recording does not show.")))
+    }
+
+    /// Whether a model with the rival predicts as well as the last one, or better where it makes up for no more than one
+    /// effect.
+    fn does_as_much(&mut self, last: &Node, with: &Node, instead_of: usize, rival: Rival) -> bool {
+        let by = self.comparison.compare(last, with);
+        let better = self.thresholds.better;
+        let needed = if instead_of > 1 { -better } else { better };
+        let outcome = if by.nats > needed { Outcome::Rival } else { Outcome::Worse };
+        self.note(instead_of, with, last, by, outcome, rival.words);
+        outcome == Outcome::Rival
     }
 
     /// The effects that are needed beside a rival, and the model with them and with it.
@@ -122,10 +123,6 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             model = model.without(self.family, *term);
         }
         self.refit(&model, last.setting, STEPS.1)
-    }
-
-    fn size_of(&self, free: &Node, rival: Rival) -> String {
-        self.family.describe(rival.term, &self.values(free, rival))
     }
 
     fn values(&self, free: &Node, rival: Rival) -> Vec<f64> {

@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
 use crate::ahead::fit;
-use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, TONE, WAVE};
+use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, RIVAL, TONE, WAVE};
 use crate::report::Verdict;
 use crate::{Observer, Settings, discover};
 
@@ -119,6 +119,40 @@ fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() 
     assert_eq!(found.added, [WAVE]);
     assert_eq!((found.rungs.len(), found.gains.len(), found.costs.len()), (1, 1, 1));
     assert!(found.complete && found.notes[0].contains("beat"), "{:?}", found.notes);
+}
+
+#[test]
+fn effects_that_a_rival_makes_up_for_are_not_named() {
+    let plant = Plant::new(11, &[(WAVE, &[0.05]), (BEAT, &[-0.02]), (TONE, &[0.06, 5.0])]);
+    let without_tone = Plant::new(11, &[(WAVE, &[0.05]), (BEAT, &[-0.02])]);
+    let exclude = ["twin", "both"].map(str::to_owned).to_vec();
+    let thresholds = Thresholds { better: 20.0, ..Thresholds::default() };
+    let settings = Settings { exclude, thresholds, ..Settings::default() };
+    let alone = discover(&without_tone, &settings, &mut ()).unwrap();
+    assert_eq!((alone.verdict, alone.added.len()), (Verdict::Unexplained, 0), "{}", alone.summary);
+    assert!(alone.summary.contains("A wave less a beat does what "), "{}", alone.summary);
+    // What is needed beside it stays.
+    let found = discover(&plant, &settings, &mut ()).unwrap();
+    assert_eq!(found.added, ["tone"], "{}", found.summary);
+    assert!(found.summary.contains("incomplete") && !found.budget.unwrap().complete);
+}
+
+#[test]
+fn effects_that_predict_better_than_a_rival_stand() {
+    let plant = Plant::new(12, &[(WAVE, &[0.05]), (BEAT, &[0.02])]);
+    let found = found(&plant, Thresholds { better: 20.0, ..Thresholds::default() }, 2);
+    let mut added = found.added.clone();
+    added.sort_unstable();
+    assert_eq!((added, found.rival), (vec![WAVE, BEAT], None));
+}
+
+#[test]
+fn a_rival_is_told_where_nothing_else_is_found() {
+    let plant = Plant::new(13, &[(RIVAL, &[0.05])]);
+    let exclude = ["wave", "beat", "both", "tone", "push", "twin"].map(str::to_owned).to_vec();
+    let found = discover(&plant, &Settings { exclude, ..Settings::default() }, &mut ()).unwrap();
+    assert_eq!((found.verdict, found.added.len()), (Verdict::Unexplained, 0));
+    assert!(found.summary.contains("A wave less a beat lowers"), "{}", found.summary);
 }
 
 #[test]
