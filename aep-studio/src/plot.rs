@@ -232,6 +232,22 @@ mod tests {
     }
 
     #[test]
+    fn lines_and_bands_are_interrupted_where_a_value_is_no_number() {
+        let x: Vec<f64> = (0..5).map(f64::from).collect();
+        let y = vec![1.0, 2.0, f64::NAN, 2.0, 1.0];
+        let whole = plot(x.clone(), y.clone());
+        let band = Band {
+            label: "a<b".into(),
+            x,
+            low: y.clone(),
+            high: y.iter().map(|y| y + 1.0).collect(),
+        };
+        let figure = figure_with_bands(&whole, &[band]).unwrap();
+        assert_eq!(figure.matches("<polyline").count(), 4);
+        assert_eq!(figure.matches("<polygon").count(), 2);
+    }
+
+    #[test]
     fn values_that_cannot_be_drawn_are_left_out() {
         assert!(figure(&plot(vec![f64::NAN], vec![1.0])).is_none());
         assert!(figure(&plot(vec![], vec![])).is_none());

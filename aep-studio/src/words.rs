@@ -238,7 +238,8 @@ pub fn missing_force(discovery: &Discovery) -> Option<String> {
         size(base.band),
     );
     if let Some(last) = discovery.missing_force.as_ref().filter(|_| discovery.ladder.len() > 1) {
-        text += &format!("; with what was found {}", size(last.rms));
+        text.push_str("; with what was found ");
+        text.push_str(&size(last.rms));
     }
     Some(text)
 }

@@ -175,12 +175,13 @@ mod tests {
         for (i, row) in joint.iter_mut().take(3).enumerate() {
             row[i] = start.covariance[i][i];
         }
-        for k in 0..count {
+        for (k, Transition { matrix, noise }) in transitions.iter().enumerate() {
             let (old, new) = (3 * k, 3 * (k + 1));
-            let Transition { matrix, noise } = transitions[k];
             for i in 0..3 {
-                for j in 0..new {
-                    let value = (0..3).map(|l| matrix[i][l] * joint[old + l][j]).sum();
+                let row: Vec<f64> = (0..new)
+                    .map(|j| (0..3).map(|l| matrix[i][l] * joint[old + l][j]).sum())
+                    .collect();
+                for (j, value) in row.into_iter().enumerate() {
                     joint[new + i][j] = value;
                     joint[j][new + i] = value;
                 }

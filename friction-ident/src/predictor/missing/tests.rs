@@ -32,6 +32,9 @@ struct Run {
 
 struct Case<'a> {
     truth: &'a Model,
+    /// The model that is run, and the mass that the gains are made for.
+    model: &'a Model,
+    mass: f64,
     time: Vec<f64>,
     hidden: &'a dyn Fn(f64) -> f64,
     /// What `truth` has beyond the plain table, by its velocity.
@@ -58,9 +61,9 @@ impl Case<'_> {
         ];
         let recording = Recording::new("hidden", self.time.clone(), channels).unwrap();
         let recording = recording.with_hold(Hold::ZeroOrder);
-        let predictor = Predictor::new(&recording, MASS, DAMPING).unwrap();
-        let setting = best(&predictor, &table()).0;
-        let found = predictor.missing_force(&table(), setting).unwrap();
+        let predictor = Predictor::new(&recording, self.mass, DAMPING).unwrap();
+        let setting = best(&predictor, self.model).0;
+        let found = predictor.missing_force(self.model, setting).unwrap();
         let before = |end: &f64| self.time.partition_point(|t| t < end) - 1;
         let truth = |end: &f64| {
             let k = before(end);
@@ -94,7 +97,8 @@ impl Run {
 }
 
 fn hidden(time: Vec<f64>, hidden: &dyn Fn(f64) -> f64) -> Run {
-    Case { truth: &table(), time, hidden, friction: &|_| 0.0 }.run()
+    let table = table();
+    Case { truth: &table, model: &table, mass: MASS, time, hidden, friction: &|_| 0.0 }.run()
 }
 
 #[test]
@@ -132,10 +136,52 @@ fn a_slow_sine_is_recovered_within_its_band() {
 fn a_hump_at_low_speed_is_recovered_within_its_band_where_the_table_turns_too() {
     let truth = table().with("stribeck", &[("dF", 4.0), ("v_s", 1e-2)]).unwrap();
     let hump = |v: f64| -4.0 * v.signum() / (1.0 + (v / 1e-2).powi(2));
-    let run = Case { truth: &truth, time: even(), hidden: &|_| 0.0, friction: &hump }.run();
+    let (model, time) = (&table(), even());
+    let case = Case { truth: &truth, model, mass: MASS, time, hidden: &|_| 0.0, friction: &hump };
+    let run = case.run();
     let (size, error, deviation, inside) = run.sizes();
     assert!(size > 1.0 && error < 0.35 && deviation < 0.5, "{size} {error} {deviation}");
     assert!(inside > 0.93, "{inside}");
+}
+
+#[test]
+fn gains_for_a_mass_that_is_a_tenth_off_make_a_force_that_is_so_too() {
+    let (table, time) = (table(), even());
+    let sine = |t: f64| 2.0 * (3.0 * t).sin();
+    let case = Case {
+        truth: &table,
+        model: &table,
+        mass: 1.1 * MASS,
+        time,
+        hidden: &sine,
+        friction: &|_| 0.0,
+    };
+    let run = case.run();
+    let ratio = run.sizes().0 / rms(&run.known().iter().map(|k| run.truth[*k]).collect::<Vec<_>>());
+    assert!((1.05..1.12).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn beside_a_contact_or_a_coupling_it_is_recovered_too() {
+    let load: &[(&str, f64)] = &[("m_L", 12.0), ("f", 60.0), ("zeta", 0.05)];
+    let cases = [
+        (table().with("presliding", &[("k_t", 2e6)]).unwrap(), MASS),
+        (table().with("presliding", &[("k_t", 2e4)]).unwrap(), MASS),
+        (table().with("flexible-coupling", load).unwrap(), MASS + 12.0),
+    ];
+    for (model, mass) in &cases {
+        let sine = |t: f64| 2.0 * (3.0 * t).sin();
+        let case = Case {
+            truth: model,
+            model,
+            mass: *mass,
+            time: even(),
+            hidden: &sine,
+            friction: &|_| 0.0,
+        };
+        let (_, error, deviation, inside) = case.run().sizes();
+        assert!(error < 0.15 && deviation < 0.2 && inside > 0.95, "{error} {deviation} {inside}");
+    }
 }
 
 #[test]
@@ -155,8 +201,9 @@ fn samples_that_only_repeat_the_one_before_are_no_measurements() {
     let force: Vec<f64> = even().iter().map(command).collect();
     let input_time = even();
     let input = Input::new(&input_time, &force, Hold::ZeroOrder).with_max_step(5e-5);
-    let mut position = simulate(&table(), &input, &Start::at(0.0, 0.0)).unwrap().position;
-    position.iter_mut().for_each(|x| *x = (*x / COUNTS).round() * COUNTS);
+    let out = simulate(&table(), &input, &Start::at(0.0, 0.0)).unwrap();
+    let counted = |x: &f64| (x / COUNTS).round() * COUNTS;
+    let mut position: Vec<f64> = out.position.iter().map(counted).collect();
     for k in (7..position.len()).step_by(40) {
         position[k] = position[k - 1];
     }
