@@ -166,6 +166,8 @@ pub fn comparison(
         where_base: view(base),
         regimes: regimes(family, &last.residual),
         regimes_base: regimes(family, &base.residual),
+        missing_force: None,
+        missing_force_base: None,
         ambiguous: Vec::new(),
         generic_term: None,
         noise_floor,

@@ -39,14 +39,15 @@ pub(crate) fn figure(plot: &Plot) -> Option<String> {
 
 /// The same with bands behind the curves.
 pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
-    let curves: Vec<Curve> = plot.curves.iter().filter_map(cleaned).collect();
+    let whole: Vec<&Curve> = plot.curves.iter().filter(|curve| has_points(curve)).collect();
+    let curves: Vec<Curve> = whole.iter().map(|curve| cleaned(curve)).collect();
     let edges: Vec<Curve> = bands.iter().flat_map(edges).collect();
     let x = Scale::fitting(curves.iter().flat_map(|c| &c.x), LEFT, WIDTH - RIGHT)?;
     let both = curves.iter().chain(&edges).flat_map(|c| &c.y);
     let y = Scale::of(both, HEIGHT - BOTTOM, TOP)?;
     let areas: String = edges.chunks(2).map(|pair| area(pair, &curves, &x, &y)).collect();
     let drawn: String =
-        curves.iter().enumerate().map(|(k, c)| curve(c, colour(c, k), &x, &y)).collect();
+        whole.iter().enumerate().map(|(k, c)| curve(c, colour(c, k), &x, &y)).collect();
     let title = escape(&plot.title);
     Some(format!(
         "<figure><figcaption>{title}</figcaption>{}\
@@ -56,22 +57,19 @@ pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
     ))
 }
 
-/// Lower and upper line of a band where both are finite; neither where there are no such points.
+/// Lower and upper line of each stretch of a band in which both are finite.
 fn edges(band: &Band) -> Vec<Curve> {
     let points = band.x.iter().zip(&band.low).zip(&band.high);
-    let finite: Vec<(f64, f64, f64)> = points
-        .map(|((x, low), high)| (*x, *low, *high))
-        .filter(|(x, low, high)| x.is_finite() && low.is_finite() && high.is_finite())
-        .collect();
-    if finite.is_empty() {
-        return Vec::new();
-    }
-    let line = |pick: fn(&(f64, f64, f64)) -> f64| Curve {
+    let points: Vec<(f64, f64, f64)> = points.map(|((x, low), high)| (*x, *low, *high)).collect();
+    let finite =
+        |(x, low, high): &(f64, f64, f64)| x.is_finite() && low.is_finite() && high.is_finite();
+    let line = |stretch: &[(f64, f64, f64)], pick: fn(&(f64, f64, f64)) -> f64| Curve {
         label: band.label.clone(),
-        x: finite.iter().map(|point| point.0).collect(),
-        y: finite.iter().map(pick).collect(),
+        x: stretch.iter().map(|point| point.0).collect(),
+        y: stretch.iter().map(pick).collect(),
     };
-    vec![line(|point| point.1), line(|point| point.2)]
+    let stretches = points.split(|point| !finite(point)).filter(|stretch| !stretch.is_empty());
+    stretches.flat_map(|s| [line(s, |point| point.1), line(s, |point| point.2)]).collect()
 }
 
 /// The area between two lines, in the colour of the curve with their label.
@@ -92,12 +90,23 @@ fn area(pair: &[Curve], curves: &[Curve], x: &Scale, y: &Scale) -> String {
     )
 }
 
-/// The finite points of a curve; nothing where there are none.
-fn cleaned(curve: &Curve) -> Option<Curve> {
-    let pairs = curve.x.iter().zip(&curve.y);
-    let (x, y): (Vec<f64>, Vec<f64>) =
-        pairs.filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
-    (!x.is_empty()).then(|| Curve { label: curve.label.clone(), x, y })
+/// Whether a point can be drawn.
+fn is_finite((x, y): &(f64, f64)) -> bool {
+    x.is_finite() && y.is_finite()
+}
+
+fn points(curve: &Curve) -> impl Iterator<Item = (f64, f64)> + '_ {
+    curve.x.iter().copied().zip(curve.y.iter().copied())
+}
+
+fn has_points(curve: &Curve) -> bool {
+    points(curve).any(|point| is_finite(&point))
+}
+
+/// The finite points of a curve.
+fn cleaned(curve: &Curve) -> Curve {
+    let (x, y) = points(curve).filter(is_finite).unzip();
+    Curve { label: curve.label.clone(), x, y }
 }
 
 /// The same thing has the same colour in every plot.
@@ -110,18 +119,25 @@ fn colour(curve: &Curve, index: usize) -> &'static str {
     }
 }
 
-fn curve(curve: &Curve, class: &str, x: &Scale, y: &Scale) -> String {
-    let forward = curve.x.windows(2).all(|pair| pair[1] >= pair[0]) && curve.x.len() > 1;
-    let points: Vec<(f64, f64)> =
-        curve.x.iter().zip(&curve.y).map(|(a, b)| (x.at(*a), y.at(*b))).collect();
+/// A line is interrupted where a value is no number.
+fn curve(whole: &Curve, class: &str, x: &Scale, y: &Scale) -> String {
+    let clean = cleaned(whole);
+    let forward = clean.x.windows(2).all(|pair| pair[1] >= pair[0]) && clean.x.len() > 1;
+    let at = |(a, b): (f64, f64)| (x.at(a), y.at(b));
     if !forward {
-        let dots = thin::cloud(&points).into_iter().map(|(a, b)| format!("M{a:.1} {b:.1}h0"));
+        let places: Vec<(f64, f64)> = points(&clean).map(at).collect();
+        let dots = thin::cloud(&places).into_iter().map(|(a, b)| format!("M{a:.1} {b:.1}h0"));
         let dots = concat(dots);
         return format!("<path class=\"dots {class}\" d=\"{dots}\"/>");
     }
-    let line: Vec<String> =
-        thin::line(&points).iter().map(|(a, b)| format!("{a:.1},{b:.1}")).collect();
-    format!("<polyline class=\"line {class}\" points=\"{}\"/>", line.join(" "))
+    let all: Vec<(f64, f64)> = points(whole).collect();
+    let stretches = all.split(|point| !is_finite(point)).filter(|stretch| !stretch.is_empty());
+    concat(stretches.map(|stretch| {
+        let places: Vec<(f64, f64)> = stretch.iter().copied().map(at).collect();
+        let line: Vec<String> =
+            thin::line(&places).iter().map(|(a, b)| format!("{a:.1},{b:.1}")).collect();
+        format!("<polyline class=\"line {class}\" points=\"{}\"/>", line.join(" "))
+    }))
 }
 
 fn legend(curves: &[Curve]) -> String {
@@ -213,6 +229,22 @@ mod tests {
         assert!(figure(3.0).contains("<polygon class=\"band") && !figure(3.0).contains("NaN"));
         assert!(figure(900.0).contains(">800<") || figure(900.0).contains("×10"));
         assert!(!figure(f64::INFINITY).contains("<polygon"));
+    }
+
+    #[test]
+    fn lines_and_bands_are_interrupted_where_a_value_is_no_number() {
+        let x: Vec<f64> = (0..5).map(f64::from).collect();
+        let y = vec![1.0, 2.0, f64::NAN, 2.0, 1.0];
+        let whole = plot(x.clone(), y.clone());
+        let band = Band {
+            label: "a<b".into(),
+            x,
+            low: y.clone(),
+            high: y.iter().map(|y| y + 1.0).collect(),
+        };
+        let figure = figure_with_bands(&whole, &[band]).unwrap();
+        assert_eq!(figure.matches("<polyline").count(), 4);
+        assert_eq!(figure.matches("<polygon").count(), 2);
     }
 
     #[test]

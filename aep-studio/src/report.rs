@@ -14,6 +14,7 @@ mod confirmation;
 mod data;
 mod doubts;
 mod ladder;
+mod missing_force;
 mod parameters;
 mod ranking;
 mod residual;

@@ -2,6 +2,7 @@
 
 use missing_physics::confirm::{Confirmation, Confirmed};
 use missing_physics::diagnosis::Diagnosis;
+use missing_physics::missing_force::MissingForce;
 use missing_physics::quantity::{number, percent, quantity};
 use missing_physics::report::{Candidate, Discovery, Estimate, Rung, SplitError, Verdict};
 use missing_physics::residual_tests::Whiteness;
@@ -221,6 +222,39 @@ pub fn main_unit(discovery: &Discovery) -> String {
     let Some(main) = main_error(discovery) else { return String::new() };
     let same = |name: &ErrorName| name.quantity == main.quantity && !name.is_relative();
     errors(discovery).into_iter().find(same).map(|name| name.unit).unwrap_or_default()
+}
+
+/// The force that base and last model lack: `missing force: 2.31 N rms of 14.2 N (16.3 %), known to ±0.12 N; with what
+/// was found 0.31 N`; nothing where that is not known.
+pub fn missing_force(discovery: &Discovery) -> Option<String> {
+    let base = discovery.missing_force_base.as_ref()?;
+    let size = |value: f64| quantity(value, &base.unit);
+    let mut text = format!(
+        "missing {}: {} rms of {} ({}), known to ±{}",
+        main_quantity(discovery),
+        size(base.rms),
+        size(base.recorded),
+        percent(base.share),
+        size(base.band),
+    );
+    if let Some(last) = discovery.missing_force.as_ref().filter(|_| discovery.ladder.len() > 1) {
+        text.push_str("; with what was found ");
+        text.push_str(&size(last.rms));
+    }
+    Some(text)
+}
+
+/// What shares by regime are shares of.
+pub fn shared_out(discovery: &Discovery, missing: Option<&MissingForce>) -> String {
+    missing.map_or_else(
+        || "of the error".to_owned(),
+        |_| format!("of the missing {}", main_quantity(discovery)),
+    )
+}
+
+/// Name of the compared quantity.
+pub fn main_quantity(discovery: &Discovery) -> String {
+    main_error(discovery).map_or_else(|| "force".to_owned(), |name| name.quantity)
 }
 
 /// Whether a residual is noise, as sentences.

@@ -95,6 +95,36 @@ fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
     }
 }
 
+#[test]
+fn the_missing_force_stands_where_it_fails_with_bands_and_gaps() {
+    let missing = |size: f64| {
+        json!({"unit": "N", "rms": size, "recorded": 14.2, "share": size / 14.2, "band": 0.12, "known": 0.9,
+            "time": [0.0, 0.1, 0.2, 0.9, 1.0], "force": vec![size; 5], "half_width": vec![0.12; 5],
+            "maps": [{"coordinate": "velocity", "unit": "m/s", "against_motion": false, "bins": [
+                {"at": 0.0, "mean": 1.0, "low": 0.5, "high": 1.5, "points": 9},
+                {"at": 1.0, "mean": 2.0, "low": 1.5, "high": 2.5, "points": 9}]}]})
+    };
+    let mut discovery = discovery();
+    assert!(!page(&discovery).contains("Missing force"));
+    discovery.missing_force_base = Some(serde_json::from_value(missing(2.31)).unwrap());
+    discovery.missing_force = Some(serde_json::from_value(missing(0.31)).unwrap());
+    let page = page(&discovery);
+    let section = page.split("id=\"where\"").nth(1).unwrap().split("</section>").next().unwrap();
+    for part in [
+        "missing force: 2.31 N rms of 14.2 N (16.3 %), known to ±0.120 N; with what was found 0.310 N",
+        "Missing force over time",
+        "Missing force along velocity",
+        "of the missing force",
+        "While the model rests, 10.0 % of the time, it is not known",
+        "class=\"band c2\"",
+        "class=\"band c1\"",
+    ] {
+        assert!(section.contains(part), "'{part}' is not in the section");
+    }
+    // Two stretches each over time, one along the velocity.
+    assert_eq!(section.matches("<polyline class=\"line c2\"").count(), 3);
+}
+
 /// The discovery with what a search by prediction errors tells besides.
 fn ahead() -> Discovery {
     let mut discovery = discovery();

@@ -21,6 +21,7 @@ pub mod in_time;
 pub mod ladder;
 mod limits;
 pub mod metrics;
+pub mod missing_force;
 pub mod noise;
 pub mod pairs;
 pub mod placebo;

@@ -11,6 +11,7 @@ use crate::ahead::decision::Decision;
 use crate::confirm::Confirmed;
 use crate::diagnosis::Diagnosis;
 use crate::metrics::SplitMetrics;
+use crate::missing_force::MissingForce;
 use crate::views::View;
 
 /// What the data say.
@@ -121,7 +122,7 @@ pub struct Where {
     pub note: String,
 }
 
-/// Share of the error in one regime of the experiment; regimes do not overlap.
+/// Share of the error, or of the missing force, in one regime of the experiment; regimes do not overlap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RegimeShare {
     /// Name of the regime, e.g. `reversal`.
@@ -130,7 +131,7 @@ pub struct RegimeShare {
     pub share: f64,
     /// Share of the time, 0..1; all regimes sum to 1.
     pub time_share: f64,
-    /// Root mean square of the residual inside, in the unit of the compared quantity.
+    /// Root mean square of the error or force inside, in the unit of the compared quantity.
     pub rms: f64,
 }
 
@@ -187,12 +188,18 @@ pub struct Discovery {
     /// Where the base model fails.
     #[serde(default)]
     pub where_base: Vec<Where>,
-    /// Shares of the squared error of the last model by regime.
+    /// Shares by regime of the square of the last model's missing force, where that is known; else of its error.
     #[serde(default)]
     pub regimes: Vec<RegimeShare>,
-    /// Shares of the squared error of the base model by regime.
+    /// The same of the base model.
     #[serde(default)]
     pub regimes_base: Vec<RegimeShare>,
+    /// The force that the last model lacks, where the family can tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing_force: Option<MissingForce>,
+    /// The force that the base model lacks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing_force_base: Option<MissingForce>,
     /// Effects that this data cannot tell apart.
     pub ambiguous: Vec<Ambiguity>,
     /// Where structure remains that no effect explains: a term, as text to save and to add, that

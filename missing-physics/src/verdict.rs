@@ -203,6 +203,8 @@ pub fn report<F: ModelFamily + ?Sized>(
         where_base: evidence.where_base.clone(),
         regimes: where_it_fails::regimes(family, &evidence.last.residual),
         regimes_base: where_it_fails::regimes(family, &evidence.base.residual),
+        missing_force: None,
+        missing_force_base: None,
         ambiguous,
         generic_term,
         noise_floor,

@@ -116,18 +116,29 @@ pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where>
 
 /// Share of the squared error and of the time in every regime; both sum to one.
 pub fn regimes<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> Vec<RegimeShare> {
-    let total: f64 = residual.iter().map(|r| r * r).sum::<f64>().max(f64::MIN_POSITIVE);
+    regimes_where(family, residual, &vec![true; residual.len()])
+}
+
+/// The same of the points that are known alone.
+pub fn regimes_where<F: ModelFamily + ?Sized>(
+    family: &F,
+    residual: &[f64],
+    known: &[bool],
+) -> Vec<RegimeShare> {
+    let of_known = |member: &dyn Fn(usize) -> bool| {
+        let inside = (0..residual.len()).filter(|k| known[*k] && member(*k));
+        inside.fold((0usize, 0.0), |(count, sum), k| (count + 1, sum + residual[k] * residual[k]))
+    };
+    let (points, total) = of_known(&|_| true);
     let mut shares: Vec<RegimeShare> = family
         .regimes()
         .iter()
         .map(|regime| {
-            let inside = residual.iter().zip(&regime.member).filter(|(_, member)| **member);
-            let (count, square) =
-                inside.fold((0usize, 0.0), |(count, sum), (r, _)| (count + 1, sum + r * r));
+            let (count, square) = of_known(&|k| regime.member[k]);
             RegimeShare {
                 regime: regime.name.clone(),
-                share: square / total,
-                time_share: count as f64 / residual.len() as f64,
+                share: square / total.max(f64::MIN_POSITIVE),
+                time_share: count as f64 / points.max(1) as f64,
                 rms: (square / count.max(1) as f64).sqrt(),
             }
         })

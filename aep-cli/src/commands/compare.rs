@@ -94,7 +94,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + &output::views(&views)
         + &warnings
         + &heading("Where it fails")
-        + &output::regimes(&discovery.regimes)
+        + &output::regimes(&discovery.regimes, "of the error")
         + "\n"
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Is what remains noise?")

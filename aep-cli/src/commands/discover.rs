@@ -153,7 +153,8 @@ fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> Strin
     let mut text = String::new();
     if let Some(base) = discovery.ladder.first() {
         text += &heading(&format!("Where the base model fails: {}", base.effects.join(" + ")));
-        text += &output::regimes(&discovery.regimes_base);
+        let of = words::shared_out(discovery, discovery.missing_force_base.as_ref());
+        text += &output::regimes(&discovery.regimes_base, &of);
         text += "\n";
         text += &output::where_it_fails(&discovery.where_base);
     }
@@ -175,7 +176,8 @@ fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> Strin
     }
     if discovery.ladder.len() > 1 {
         text += &heading("Where the last model fails");
-        text += &output::regimes(&discovery.regimes);
+        let of = words::shared_out(discovery, discovery.missing_force.as_ref());
+        text += &output::regimes(&discovery.regimes, &of);
     }
     if let Some(diagnosis) = &discovery.diagnosis {
         text += &heading("Is what remains noise?");

@@ -87,7 +87,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + &heading("Parameters")
         + &output::parameters(&last)
         + &heading("Where it fails now")
-        + &output::regimes(&discovery.regimes)
+        + &output::regimes(&discovery.regimes, "of the error")
         + "\n"
         + &output::notes(&discovery)
         + &files;

@@ -116,7 +116,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         output::comparisons(&discovery)
     };
     let text = heading("Where the model fails")
-        + &output::regimes(&discovery.regimes)
+        + &output::regimes(&discovery.regimes, "of the error")
         + "\n"
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Which effect is missing")

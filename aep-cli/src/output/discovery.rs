@@ -44,6 +44,9 @@ pub fn verdict(discovery: &Discovery) -> String {
         let colour = if complete { AnsiColor::Green } else { AnsiColor::Yellow };
         let _ = writeln!(text, " {}", paint(colour, &said));
     }
+    if let Some(said) = words::missing_force(discovery) {
+        let _ = writeln!(text, " {said}");
+    }
     for line in wrapped(&discovery.summary) {
         let _ = writeln!(text, " {line}");
     }
@@ -256,15 +259,15 @@ fn ladder_cells(
     cells
 }
 
-/// Shares of the error by regime.
-pub fn regimes(regimes: &[RegimeShare]) -> String {
+/// Shares by regime, `of` what.
+pub fn regimes(regimes: &[RegimeShare], of: &str) -> String {
     if regimes.is_empty() {
         return String::new();
     }
     let mut table = Table::new(&[
         ("regime", Align::Left),
         ("", Align::Bar),
-        ("of the error", Align::Right),
+        (of, Align::Right),
         ("of the time", Align::Right),
     ]);
     for regime in regimes {

@@ -54,6 +54,17 @@ fn the_json_keeps_the_contract() {
     for key in ["expected", "base", "last", "complete"] {
         assert!(json["budget"].get(key).is_some(), "{key}");
     }
+    for model in ["missing_force_base", "missing_force"] {
+        for key in ["rms", "recorded", "share", "band", "known"] {
+            assert!(json[model][key].is_f64(), "{model}.{key}");
+        }
+        for key in ["time", "force", "half_width"] {
+            let length = json[model][key].as_array().unwrap().len();
+            assert!((1000..=4000).contains(&length), "{model}.{key}: {length}");
+        }
+    }
+    let missing = |model: &str| json[model]["rms"].as_f64().unwrap();
+    assert!(missing("missing_force") < 0.1 * missing("missing_force_base"));
     for key in ["rung", "candidate", "compared_with", "difference", "standard_error", "outcome"] {
         assert!(json["decisions"][0].get(key).is_some_and(|value| !value.is_null()), "{key}");
     }

@@ -98,12 +98,14 @@ fn figure(discovery: &Discovery, base: Option<&ResidualMap>, last: &ResidualMap)
     plot::figure_with_bands(&plot, &bands)
 }
 
-fn curve(label: &str, map: &ResidualMap) -> Curve {
+/// The means of a map as a curve.
+pub(super) fn curve(label: &str, map: &ResidualMap) -> Curve {
     let (x, y) = map.bins.iter().map(|bin| (bin.at, bin.mean)).unzip();
     Curve { label: label.to_owned(), x, y }
 }
 
-fn band(label: &str, map: &ResidualMap) -> Band {
+/// Their bands.
+pub(super) fn band(label: &str, map: &ResidualMap) -> Band {
     let (low, high) = map.bins.iter().map(|bin| (bin.low, bin.high)).unzip();
     Band { label: label.to_owned(), x: map.bins.iter().map(|bin| bin.at).collect(), low, high }
 }

@@ -4,6 +4,7 @@ use missing_physics::Discovery;
 use missing_physics::quantity::percent;
 use missing_physics::report::{RegimeShare, Where};
 
+use super::missing_force;
 use crate::html::{self, bar, escape, table};
 use crate::words;
 
@@ -15,10 +16,12 @@ const CHANCE: f64 = 0.05;
 
 /// The section of where it fails.
 pub(super) fn section(discovery: &Discovery) -> String {
-    let base = column("Base model", &discovery.regimes_base, &discovery.where_base);
+    let of = words::shared_out(discovery, discovery.missing_force_base.as_ref());
+    let base = column("Base model", &of, &discovery.regimes_base, &discovery.where_base);
     let changed = discovery.ladder.len() > 1;
     let last = if changed || base.is_empty() {
-        column("Last model", &discovery.regimes, &discovery.where_it_fails)
+        let of = words::shared_out(discovery, discovery.missing_force.as_ref());
+        column("Last model", &of, &discovery.regimes, &discovery.where_it_fails)
     } else {
         String::new()
     };
@@ -29,18 +32,19 @@ pub(super) fn section(discovery: &Discovery) -> String {
         "where",
         "Where it fails",
         LEAD,
-        &format!("<div class=columns>{base}{last}</div>"),
+        &format!("{}<div class=columns>{base}{last}</div>", missing_force::shown(discovery)),
     )
 }
 
-fn column(title: &str, regimes: &[RegimeShare], places: &[Where]) -> String {
+fn column(title: &str, of: &str, regimes: &[RegimeShare], places: &[Where]) -> String {
     if regimes.is_empty() && places.is_empty() {
         return String::new();
     }
-    format!("<div><h3>{}</h3>{}{}</div>", escape(title), shares(regimes), dependences(places))
+    let (shares, places) = (shares(of, regimes), dependences(places));
+    format!("<div><h3>{}</h3>{shares}{places}</div>", escape(title))
 }
 
-fn shares(regimes: &[RegimeShare]) -> String {
+fn shares(of: &str, regimes: &[RegimeShare]) -> String {
     if regimes.is_empty() {
         return String::new();
     }
@@ -55,7 +59,7 @@ fn shares(regimes: &[RegimeShare]) -> String {
             ]
         })
         .collect();
-    table(&["Regime", "", "#of the error", "#of the time"], &rows)
+    table(&["Regime", "", &format!("#{of}"), "#of the time"], &rows)
 }
 
 fn dependences(places: &[Where]) -> String {

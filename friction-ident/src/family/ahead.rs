@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use aep_core::Scale;
 use missing_physics::ahead::{Ahead, Columns, Rival, Trial, trials};
+use missing_physics::missing_force::Series;
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
@@ -203,6 +204,10 @@ impl Ahead for View<'_> {
         let periods: Vec<f64> = trials.iter().map(period).collect();
         // The fundamental chooses the period; harmonics follow when it is looked at as it is.
         Some(self.ahead.responses(setting, wave, periods))
+    }
+
+    fn missing_force(&self, model: &Fitted, setting: usize) -> Option<Series> {
+        self.ahead.predictor.missing_force(&self.family.model(model).ok()?, setting)
     }
 
     fn part(&self) -> Option<Box<dyn Ahead + '_>> {

@@ -11,6 +11,7 @@
 //! ladder trusts the model while the axis is at rest, where friction holds whatever else acts.
 
 mod gain;
+mod missing;
 mod noise;
 mod response;
 mod stale;
@@ -25,7 +26,7 @@ pub use response::Wave;
 
 use crate::effects::Slot;
 use crate::model::Model;
-use crate::simulator::{Input, Plants, Start};
+use crate::simulator::{Input, Plants, SimulationError, Start};
 use gain::{Gain, gains};
 
 /// Longest step of the simulation, s, and that with a second body.
@@ -74,6 +75,16 @@ pub struct Predictor {
     plant: (f64, f64),
     fed_back: f64,
     rest_speed: f64,
+}
+
+/// What happens to a model at a sample.
+struct Step {
+    /// Measured less shown position, m or rad.
+    error: f64,
+    /// What is added to position and velocity after it.
+    fed: (f64, f64),
+    /// Whether the model rests at its end.
+    rests: bool,
 }
 
 impl Predictor {
@@ -201,7 +212,7 @@ impl Predictor {
 
     /// Innovation that is to be expected at a setting, m or rad: its standard deviation at a typical sample.
     pub fn expected(&self, setting: usize) -> f64 {
-        self.gains[setting % self.ladder.len()].expected
+        self.gain(setting).expected
     }
 
     /// Innovation that the sensors alone make: the smallest process noise beside that of the recorded force.
@@ -220,6 +231,35 @@ impl Predictor {
     }
 
     fn batch(&self, trials: &[(Model, usize)]) -> Vec<Vec<f64>> {
+        let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
+        let mut errors = vec![Vec::with_capacity(self.counted.len()); trials.len()];
+        let mut counted = vec![false; self.time.len()];
+        self.counted.iter().for_each(|k| counted[*k] = true);
+        let plants = self.follow(trials, |n, i, step| {
+            if counted[n] {
+                // A model that runs away errs as much as can be, whatever it says.
+                let (scaled, cut) = (step.error * gain[i].relative[n], LIMIT * gain[i].expected);
+                errors[i].push(if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut });
+            }
+        });
+        if plants.is_err() {
+            return vec![vec![f64::NAN; self.counted.len()]; trials.len()];
+        }
+        errors
+    }
+
+    /// The gain of a setting while the axis moves.
+    fn gain(&self, setting: usize) -> &Gain {
+        &self.gains[setting % self.ladder.len()]
+    }
+
+    /// Runs models of the same effects along the recording, each at its own setting; tells what happens at every
+    /// sample but the first of a piece: its number, that of the model, and the step.
+    fn follow(
+        &self,
+        trials: &[(Model, usize)],
+        mut see: impl FnMut(usize, usize, &Step),
+    ) -> Result<(), SimulationError> {
         let lanes = trials.len();
         let mut models: Vec<Model> = trials.iter().map(|(model, _)| model.clone()).collect();
         let two = models[0].acts_on(Slot::Attached);
@@ -227,20 +267,16 @@ impl Predictor {
             // A vector that is not full costs as much as one that is, plants beside it far more.
             models.resize(lanes.next_multiple_of(VECTOR), trials[lanes - 1].0.clone());
         }
-        let Ok(mut plants) = Plants::new(&models) else {
-            return vec![vec![f64::NAN; self.counted.len()]; lanes];
-        };
+        let mut plants = Plants::new(&models)?;
         let rungs = self.ladder.len();
-        let gain: Vec<&Gain> = trials.iter().map(|(_, s)| &self.gains[s % rungs]).collect();
+        let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
         let at_rest: Vec<&Gain> =
             trials.iter().map(|(_, s)| &self.gains[if *s < rungs { *s } else { 0 }]).collect();
         let step = if two { STEP_OF_TWO } else { STEP };
         let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
-        let mut errors = vec![Vec::with_capacity(self.counted.len()); lanes];
         let all = models.len();
         let (mut length, mut command) = (vec![0.0; all], vec![0.0; all]);
         let (mut dx, mut dv) = (vec![0.0; all], vec![0.0; all]);
-        let mut counted = self.counted.iter().copied().peekable();
         for segment in &self.segments {
             let start = self.start(segment);
             (0..all).for_each(|i| plants.start(i, &start));
@@ -252,26 +288,17 @@ impl Predictor {
                     plants.step(&length, &command);
                 }
                 let n = k + 1;
-                let counts = counted.next_if_eq(&n).is_some();
                 let (measured, shown, velocity) =
                     (self.position[n], plants.shown(), plants.velocity());
                 for i in 0..lanes {
                     let error = measured - shown[i];
-                    let slow = velocity[i].abs() < self.rest_speed;
-                    let g = if slow { at_rest[i] } else { gain[i] };
-                    if counts {
-                        // A model that runs away errs as much as can be, whatever it says.
-                        let (scaled, cut) = (error * gain[i].relative[n], LIMIT * gain[i].expected);
-                        errors[i].push(if scaled.is_finite() {
-                            scaled.clamp(-cut, cut)
-                        } else {
-                            cut
-                        });
-                    }
+                    let rests = velocity[i].abs() < self.rest_speed;
+                    let g = if rests { at_rest[i] } else { gain[i] };
                     let finite = error.is_finite();
                     let fed = if finite { error.clamp(-self.fed_back, self.fed_back) } else { 0.0 };
                     dx[i] = g.position[n] * fed;
                     dv[i] = g.velocity[n] * fed;
+                    see(n, i, &Step { error, fed: (dx[i], dv[i]), rests });
                 }
                 for i in lanes..all {
                     (dx[i], dv[i]) = (dx[lanes - 1], dv[lanes - 1]);
@@ -279,7 +306,7 @@ impl Predictor {
                 plants.correct(&dx, &dv);
             }
         }
-        errors
+        Ok(())
     }
 
     /// Where a piece starts: at rest, unless the first samples move by more than their noise.

@@ -5,6 +5,7 @@
 //! choose among hundreds of periods of a ripple, at a hundredth of the cost.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -96,12 +97,24 @@ impl Predictor {
         for segment in &self.segments {
             for (k, moving) in moving[..segment.end].iter_mut().enumerate().skip(segment.start + 1)
             {
-                let from = k.saturating_sub(AROUND).max(segment.start);
-                let to = (k + AROUND).min(segment.end - 1);
+                let (from, to) = around(segment, k);
                 let way = (self.position[to] - self.position[from]).abs();
                 *moving = way > MOVED * self.noise.position;
             }
         }
         moving
     }
+
+    /// Mean speed of the measured axis over a few samples around one.
+    pub(super) fn speed_around(&self, k: usize) -> f64 {
+        let Some(segment) = self.segments.get(self.piece(k)) else { return 0.0 };
+        let (from, to) = around(segment, k);
+        let duration = (self.time[to] - self.time[from]).max(f64::MIN_POSITIVE);
+        (self.position[to] - self.position[from]).abs() / duration
+    }
+}
+
+/// First and last of the samples around one, in its piece.
+fn around(segment: &Range<usize>, k: usize) -> (usize, usize) {
+    (k.saturating_sub(AROUND).max(segment.start), (k + AROUND).min(segment.end - 1))
 }

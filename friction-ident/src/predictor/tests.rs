@@ -7,13 +7,13 @@ use super::*;
 use crate::axis::Axis;
 use crate::simulator::simulate;
 
-const MASS: f64 = 33.0;
-const DAMPING: f64 = 200.0;
+pub(super) const MASS: f64 = 33.0;
+pub(super) const DAMPING: f64 = 200.0;
 /// Counts of the encoder, m.
 const COUNT: f64 = 1e-6;
 const SAMPLES: u32 = 8000;
 
-fn table() -> Model {
+pub(super) fn table() -> Model {
     Model::new(Axis::Linear, MASS)
         .and_then(|m| m.with("coulomb", &[("F_C", 8.0)]))
         .and_then(|m| m.with("viscous", &[("F_v", DAMPING)]))
@@ -49,7 +49,7 @@ fn predictor(recording: &Recording) -> Predictor {
     Predictor::new(recording, MASS, DAMPING).unwrap()
 }
 
-fn rms(errors: &[f64]) -> f64 {
+pub(super) fn rms(errors: &[f64]) -> f64 {
     (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
 }
 
@@ -60,7 +60,7 @@ fn lag_one(errors: &[f64]) -> f64 {
 }
 
 /// Setting at which a model predicts best, and its errors there.
-fn best(predictor: &Predictor, model: &Model) -> (usize, Vec<f64>) {
+pub(super) fn best(predictor: &Predictor, model: &Model) -> (usize, Vec<f64>) {
     let trials: Vec<(Model, usize)> =
         (0..predictor.settings()).map(|setting| (model.clone(), setting)).collect();
     let all = predictor.errors(&trials).into_iter().enumerate();

@@ -18,13 +18,14 @@ mod scales;
 pub mod screen;
 pub mod statistics;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 mod thresholds;
 
 pub use report::discover;
 pub use thresholds::Thresholds;
 
 use crate::family::{Fitted, ModelFamily};
+use crate::missing_force::Series;
 
 /// A recording seen one sample ahead.
 pub trait Ahead: Sync {
@@ -98,6 +99,11 @@ pub trait Ahead: Sync {
     /// much cheaper than errors of the trials: the few best of them are then looked at as they are. Single
     /// precision is enough to choose by.
     fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Columns> {
+        None
+    }
+
+    /// The force beside a model that would make it follow the recording, by its prediction errors at a setting.
+    fn missing_force(&self, _model: &Fitted, _setting: usize) -> Option<Series> {
         None
     }
 

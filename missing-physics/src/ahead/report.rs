@@ -21,8 +21,9 @@ use crate::discover::{Event, Observer, Settings};
 use crate::family::{Fitted, ModelFamily};
 use crate::fit::{self, Fit};
 use crate::metrics::SplitMetrics;
+use crate::missing_force::MissingForce;
 use crate::quantity::quantity;
-use crate::report::{Ambiguity, Budget, Candidate, Discovery, Rung, Verdict};
+use crate::report::{Ambiguity, Budget, Candidate, Discovery, RegimeShare, Rung, Verdict};
 use crate::screen::weights;
 use crate::split::Split;
 use crate::where_it_fails::{self, View};
@@ -178,6 +179,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let floor = noise::floor_of(family, &last_fit.residual);
         noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
         let ladder = self.ladder(&split, &base_fit, &fits);
+        let last = self.lacks(self.found.rungs.last().unwrap_or(&self.found.base), last_fit);
+        let base =
+            if added.is_empty() { last.clone() } else { self.lacks(&self.found.base, &base_fit) };
         let summary = self.summary(verdict, &budget, &added, &ladder, &ambiguous, &where_last);
         let generic_term = (verdict == Verdict::Unexplained)
             .then(|| self.generic_term(&where_last, &last_fit.residual))
@@ -190,8 +194,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             ranking: self.ranking(),
             where_it_fails: where_last,
             where_base,
-            regimes: where_it_fails::regimes(family, &last_fit.residual),
-            regimes_base: where_it_fails::regimes(family, &base_fit.residual),
+            regimes: last.1,
+            regimes_base: base.1,
+            missing_force: last.0,
+            missing_force_base: base.0,
             ambiguous,
             generic_term,
             noise_floor,
@@ -212,6 +218,15 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         };
         diagnosis::attach(family, &base_fit, last_fit, self.settings.seed, &mut discovery);
         discovery
+    }
+
+    /// The force that a model lacks, and its shares by regime; where nothing is known of it those of the error.
+    fn lacks(&self, node: &Node, fit: &Fit) -> (Option<MissingForce>, Vec<RegimeShare>) {
+        let series = self.ahead.missing_force(&node.model, node.setting);
+        match series.and_then(|series| MissingForce::of(self.family, &series)) {
+            Some((missing, regimes)) => (Some(missing), regimes),
+            None => (None, where_it_fails::regimes(self.family, &fit.residual)),
+        }
     }
 
     fn notes(&self) -> Vec<String> {
