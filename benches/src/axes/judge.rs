@@ -1,6 +1,7 @@
 //! The one place where a recording is handed to the library, and where its answer is judged.
 
 use friction_ident::family::{FrictionFamily, Options};
+use missing_physics::ahead::Thresholds;
 use missing_physics::data_check::cut_at_gaps;
 use missing_physics::report::Verdict;
 use missing_physics::{Channel, Discovery, Hold, Recording, Settings, discover};
@@ -63,8 +64,17 @@ fn hold(force: Force, told: Told) -> Hold {
     }
 }
 
+/// How the library is asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked {
+    /// What it is told.
+    pub told: Told,
+    /// What an effect must be worth.
+    pub thresholds: Thresholds,
+}
+
 /// Asks the library what a model with `base` lacks.
-fn ask(recorded: &Recorded, base: &[&str], seed: u64, told: Told) -> Result<Discovery, String> {
+fn ask(recorded: &Recorded, base: &[&str], seed: u64, asked: Asked) -> Result<Discovery, String> {
     let (force, position) = if recorded.rotary { ("Nm", "rad") } else { ("N", "m") };
     let channels = vec![
         Channel::new("force", force, recorded.run.force.clone()),
@@ -72,19 +82,21 @@ fn ask(recorded: &Recorded, base: &[&str], seed: u64, told: Told) -> Result<Disc
     ];
     let recording = Recording::new("axis", recorded.run.time.clone(), channels)
         .map_err(|error| error.to_string())?
-        .with_hold(hold(recorded.force, told));
+        .with_hold(hold(recorded.force, asked.told));
     let recording = cut_at_gaps(&recording).map_err(|error| error.to_string())?;
     let family =
         FrictionFamily::new(&recording, &Options::default()).map_err(|error| error.to_string())?;
     let base = base.iter().map(|name| (*name).to_owned()).collect();
-    let settings = Settings { base, seed, ..Settings::default() };
+    let thresholds = asked.thresholds;
+    let settings =
+        Settings { base, seed, most: thresholds.most, thresholds, ..Settings::default() };
     discover(&family, &settings, &mut ()).map_err(|error| error.to_string())
 }
 
 /// Asks and judges.
-pub fn judged(case: &Case, recorded: &Recorded, seed: u64, told: Told) -> Outcome {
+pub fn judged(case: &Case, recorded: &Recorded, seed: u64, asked: Asked) -> Outcome {
     let visibility = recorded.visibility;
-    match ask(recorded, &case.base, seed, told) {
+    match ask(recorded, &case.base, seed, asked) {
         Err(said) => Outcome {
             answer: Answer::Refused,
             said,
@@ -168,7 +180,8 @@ mod tests {
     fn a_clear_spring_whose_hold_is_known_is_answered() {
         let case = all().into_iter().find(|case| case.name == "spring").expect("exists");
         let recorded = recorded(&case, Level::Clear, 1).expect("shows");
-        let outcome = judged(&case, &recorded, 1, Told::Truth);
+        let asked = Asked { told: Told::Truth, thresholds: Thresholds::default() };
+        let outcome = judged(&case, &recorded, 1, asked);
         assert_ne!(outcome.answer, Answer::Refused, "{}", outcome.said);
         assert!((outcome.visibility - recorded.visibility).abs() < 1e-12);
     }

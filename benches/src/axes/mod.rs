@@ -18,5 +18,6 @@ pub mod random;
 pub mod record;
 pub mod score;
 pub mod select;
+pub mod sweep;
 pub mod visibility;
 pub mod write;

@@ -9,12 +9,13 @@ use std::fs;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use benches::axes::case::{Case, Size, all};
-use benches::axes::judge::{Outcome, Told, judged};
-use benches::axes::level::{Level, recorded};
-use benches::axes::{score, select, write};
+use benches::axes::case::{Case, Size, Wanted, all};
+use benches::axes::judge::{Asked, Outcome, Told, judged};
+use benches::axes::level::{Level, Recorded, recorded};
+use benches::axes::{score, select, sweep, write};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+use missing_physics::ahead::Thresholds;
 use rayon::prelude::*;
 
 #[derive(Parser)]
@@ -23,9 +24,9 @@ struct Args {
     /// Kinds: table, joint, spindle, unlisted; all by default
     #[arg(long, value_delimiter = ',')]
     kinds: Vec<String>,
-    /// Only cases whose `kind/name` fits, `*` for anything, e.g. 'table/stri*'
-    #[arg(long, value_name = "GLOB", default_value = "*")]
-    only: String,
+    /// Only cases whose `kind/name` fits one of these, `*` for anything, e.g. 'table/stri*,*/nothing'
+    #[arg(long, value_name = "GLOB", default_value = "*", value_delimiter = ',')]
+    only: Vec<String>,
     /// Seeds, both included; from 1001 they are kept for judging
     #[arg(long, value_name = "FROM..TO", default_value = "1..4", value_parser = select::seeds)]
     seeds: (u64, u64),
@@ -38,6 +39,9 @@ struct Args {
     /// Tell the discovery how the force acts between samples
     #[arg(long)]
     known_hold: bool,
+    /// Ask with half and with one and a half times each threshold, too, and print a row for each
+    #[arg(long, conflicts_with_all = ["csv", "write"])]
+    sweep: bool,
     /// Write one line per recording
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -62,7 +66,10 @@ fn main() -> ExitCode {
     let cases: Vec<Case> = all()
         .into_iter()
         .filter(|case| args.kinds.is_empty() || args.kinds.iter().any(|kind| kind == case.kind))
-        .filter(|case| select::fits(&args.only, &format!("{}/{}", case.kind, case.name)))
+        .filter(|case| {
+            let name = format!("{}/{}", case.kind, case.name);
+            args.only.iter().any(|glob| select::fits(glob, &name))
+        })
         .collect();
     let jobs = jobs(&cases, &args);
     if jobs.is_empty() {
@@ -73,7 +80,8 @@ fn main() -> ExitCode {
         eprintln!("--jobs {}: {error}", args.jobs);
         return ExitCode::FAILURE;
     }
-    match run(&jobs, &args) {
+    let done = if args.sweep { Ok(sweep(&jobs, &args)) } else { run(&jobs, &args) };
+    match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");
@@ -95,11 +103,41 @@ fn jobs<'a>(cases: &'a [Case], args: &Args) -> Vec<Job<'a>> {
     jobs
 }
 
-fn run(jobs: &[Job<'_>], args: &Args) -> std::io::Result<()> {
-    let bar = ProgressBar::new(jobs.len() as u64).with_style(
+fn bar(count: usize) -> ProgressBar {
+    ProgressBar::new(count as u64).with_style(
         ProgressStyle::with_template("{wide_bar} {pos}/{len} {eta} {msg}").expect("valid"),
-    );
+    )
+}
+
+fn asked(args: &Args) -> Asked {
     let told = if args.known_hold { Told::Truth } else { Told::Nothing };
+    Asked { told, thresholds: Thresholds::default() }
+}
+
+/// The same recordings under every variation of the thresholds, a row for each.
+fn sweep(jobs: &[Job<'_>], args: &Args) {
+    let variations = sweep::variations(asked(args).thresholds);
+    let bar = bar(jobs.len() * variations.len());
+    let made: Vec<Option<Recorded>> =
+        jobs.par_iter().map(|job| recorded(job.case, job.level, job.seed)).collect();
+    println!("{}", sweep::HEAD);
+    for (name, thresholds) in variations {
+        bar.set_message(name.clone());
+        let asked = Asked { thresholds, ..asked(args) };
+        let each = jobs.par_iter().zip(&made).filter_map(|(job, made)| {
+            let outcome = judged(job.case, made.as_ref()?, job.seed, asked);
+            bar.inc(1);
+            Some((job.case.wanted(), outcome))
+        });
+        let outcomes: Vec<(Wanted, Outcome)> = each.collect();
+        bar.suspend(|| println!("{}", sweep::row(&name, &outcomes)));
+    }
+    bar.finish_and_clear();
+}
+
+fn run(jobs: &[Job<'_>], args: &Args) -> std::io::Result<()> {
+    let bar = bar(jobs.len());
+    let asked = asked(args);
     let outcomes: Vec<Option<Outcome>> = jobs
         .par_iter()
         .map(|&Job { case, level, seed }| {
@@ -111,7 +149,7 @@ fn run(jobs: &[Job<'_>], args: &Args) -> std::io::Result<()> {
                     write::save(folder, (case, level, seed), recorded)?;
                     None
                 }
-                (Some(recorded), None) => Some(judged(case, recorded, seed, told)),
+                (Some(recorded), None) => Some(judged(case, recorded, seed, asked)),
                 (None, _) => {
                     bar.suspend(|| eprintln!("{name}: no size shows as much; left out"));
                     None
