@@ -97,7 +97,7 @@ pub fn lines(full: &FullRate, quantity: &str, unit: &str) -> (Vec<Line>, Vec<Plo
     let plots = spectra.iter().map(|spectrum| spectrum.plot(quantity, unit)).collect();
     let mut lines: Vec<(usize, Line)> = Vec::new();
     for (k, spectrum) in spectra.iter().enumerate() {
-        let kept = spectrum.lines().into_iter().filter(|line| {
+        let kept = spectrum.lines().filter(|line| {
             spectrum.coordinate.is_none_or(|c| in_all_passes(full, c, 1.0 / line.period))
         });
         lines.extend(kept.take(MOST).map(|line| (k, line)));
@@ -136,8 +136,8 @@ impl<'a> Spectrum<'a> {
         self.coordinate.map_or("s", |coordinate| coordinate.unit.as_str())
     }
 
-    fn lines(&self) -> Vec<Line> {
-        let named = |peak: Peak| {
+    fn lines(&self) -> impl Iterator<Item = Line> {
+        let named = move |peak: Peak| {
             let period = 1.0 / peak.frequency;
             let name = match self.coordinate {
                 None => format!("{} Hz", number(peak.frequency)),
@@ -153,7 +153,7 @@ impl<'a> Spectrum<'a> {
                 note: String::new(),
             }
         };
-        self.periodogram.peaks(FALSE_ALARMS).into_iter().map(named).collect()
+        self.periodogram.peaks(FALSE_ALARMS).map(named)
     }
 
     fn plot(&self, quantity: &str, unit: &str) -> Plot {

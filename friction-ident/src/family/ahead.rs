@@ -55,24 +55,21 @@ struct Responses {
 impl OneAhead {
     /// Gains for a plant of about `mass` and `damping`; nothing where the recording is too short.
     pub fn new(recording: &Recording, mass: f64, damping: f64) -> Option<Self> {
-        Some(Self::of(Predictor::new(recording, mass, damping)?, recording))
+        Predictor::new(recording, mass, damping).map(Self::of)
     }
 
     /// The same of a part of the recording, where it is long: pieces spread over all of it.
-    pub fn thinned(&self, recording: &Recording) -> Option<Self> {
-        Some(Self::of(self.predictor.thinned(MOST_SAMPLES)?, recording))
+    pub fn thinned(&self) -> Option<Self> {
+        self.predictor.thinned(MOST_SAMPLES).map(Self::of)
     }
 
-    fn of(predictor: Predictor, recording: &Recording) -> Self {
-        let part = predictor.thinned(RANKED_ON);
-        let part = part.map(|part| Arc::new(Self::whole(part, recording)));
-        Self { part, ..Self::whole(predictor, recording) }
+    fn of(predictor: Predictor) -> Self {
+        let part = predictor.thinned(RANKED_ON).map(|part| Arc::new(Self::whole(part)));
+        Self { part, ..Self::whole(predictor) }
     }
 
-    fn whole(predictor: Predictor, recording: &Recording) -> Self {
-        let piece = |k: usize| predictor.piece(k);
-        let instants =
-            predictor.counted().iter().map(|&k| (recording.time()[k], piece(k))).collect();
+    fn whole(predictor: Predictor) -> Self {
+        let instants = predictor.instants();
         Self { predictor, instants, responses: Arc::default(), part: None }
     }
 
@@ -182,7 +179,7 @@ impl Ahead for View<'_> {
     fn along(&self) -> Vec<(String, String, Vec<f64>)> {
         let position = self.family.recording.channel("position");
         let values = |channel: &missing_physics::Channel| {
-            self.ahead.predictor.counted().iter().map(|k| channel.values[*k]).collect()
+            self.ahead.predictor.counted().map(|k| channel.values[k]).collect()
         };
         position.map(|c| ("position".to_owned(), c.unit.clone(), values(c))).into_iter().collect()
     }

@@ -144,7 +144,7 @@ impl FrictionFamily {
         family.doubt = doubt;
         let mass = simple[0].max(0.02 * family.terms[0].parameters[0].start);
         family.ahead = ahead::OneAhead::new(recording, mass, simple[1].max(0.0));
-        family.thinned = family.ahead.as_ref().and_then(|ahead| ahead.thinned(recording));
+        family.thinned = family.ahead.as_ref().and_then(ahead::OneAhead::thinned);
         Ok(family)
     }
 

@@ -58,6 +58,8 @@ const VECTOR: usize = 8;
 /// What is needed of a recording to predict it.
 #[derive(Clone, Debug)]
 pub struct Predictor {
+    /// Where each sample stands in the recording.
+    origin: Vec<usize>,
     time: Vec<f64>,
     position: Vec<f64>,
     force: Vec<f64>,
@@ -99,6 +101,7 @@ impl Predictor {
         let ladder = (0..RUNGS).map(|k| rms * LEAST * FACTOR.powi(k as i32)).collect();
         let stroke = position.iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
         let mut predictor = Self {
+            origin: (0..recording.len()).collect(),
             time: recording.time().to_vec(),
             hold: recording.hold(),
             segments: recording.segments().to_vec(),
@@ -156,8 +159,7 @@ impl Predictor {
             return None;
         }
         let share = most as f64 / all as f64;
-        let mut thinned = self.clone();
-        thinned.segments.clear();
+        let mut parts: Vec<Range<usize>> = Vec::new();
         let mut number = 0.0f64;
         for segment in &self.segments {
             let interval =
@@ -168,18 +170,41 @@ impl Predictor {
                 let end = (start + length).min(segment.end);
                 number += 1.0;
                 if (number * GOLDEN).fract() < share && end - start > length / 2 {
-                    thinned.segments.push(start..end);
+                    parts.push(start..end);
                 }
                 start = end;
             }
         }
+        let mut end = 0;
+        let segments = parts.iter().map(|part| {
+            let start = end;
+            end += part.len();
+            start..end
+        });
+        let mut thinned = Self {
+            segments: segments.collect(),
+            origin: picked(&self.origin, &parts),
+            time: picked(&self.time, &parts),
+            position: picked(&self.position, &parts),
+            force: picked(&self.force, &parts),
+            stale: picked(&self.stale, &parts),
+            counted: Vec::new(),
+            gains: Vec::new(),
+            ladder: self.ladder.clone(),
+            noise: self.noise.clone(),
+            ..*self
+        };
         thinned.counted = thinned.countable();
         thinned.tune(self.plant.0, self.plant.1);
         Some(thinned)
     }
 
-    /// Number of the piece that a sample belongs to.
-    pub fn piece(&self, sample: usize) -> usize {
+    /// Instants of the samples that count, s, and the number of the piece that each belongs to.
+    pub fn instants(&self) -> Vec<(f64, usize)> {
+        self.counted.iter().map(|k| (self.time[*k], self.piece(*k))).collect()
+    }
+
+    fn piece(&self, sample: usize) -> usize {
         self.segments.partition_point(|segment| segment.end <= sample)
     }
 
@@ -195,9 +220,9 @@ impl Predictor {
         stale.filter(|stale| **stale).count() as f64 / all as f64
     }
 
-    /// Indices of the samples that count.
-    pub fn counted(&self) -> &[usize] {
-        &self.counted
+    /// Indices in the recording of the samples that count.
+    pub fn counted(&self) -> impl Iterator<Item = usize> {
+        self.counted.iter().map(|k| self.origin[*k])
     }
 
     /// Number of process noises: the ladder, and the ladder with trust at rest.
@@ -320,6 +345,11 @@ impl Predictor {
         let command = self.force[first];
         Start { time: self.time[first], command, ..Start::at(self.position[first], velocity) }
     }
+}
+
+/// The values of these parts, one after the other.
+fn picked<T: Copy>(values: &[T], parts: &[Range<usize>]) -> Vec<T> {
+    parts.iter().flat_map(|part| values[part.clone()].iter().copied()).collect()
 }
 
 #[cfg(test)]

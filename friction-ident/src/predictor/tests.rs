@@ -207,8 +207,11 @@ fn a_part_of_a_recording_has_as_many_samples_as_asked_and_all_of_its_places() {
     let part = whole.thinned(3000).unwrap();
     let samples: usize = part.segments.iter().map(Range::len).sum();
     assert!((2000..=4000).contains(&samples), "{samples}");
-    assert!(part.counted().iter().all(|k| part.segments[part.piece(*k)].contains(k)));
-    assert!(part.counted().last().unwrap() > &(SAMPLES as usize / 2));
+    assert!(part.counted.iter().all(|k| part.segments[part.piece(*k)].contains(k)));
+    assert!(part.counted().last().unwrap() > SAMPLES as usize / 2);
+    for (k, (time, _)) in part.counted().zip(part.instants()) {
+        assert_eq!(data.time()[k], time);
+    }
     let ratio = rms(&best(&part, &table()).1) / rms(&best(&whole, &table()).1);
     assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
 }

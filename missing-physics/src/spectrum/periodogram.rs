@@ -10,6 +10,7 @@
 use std::f64::consts::{LN_2, PI};
 
 use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
 
 /// Fewest and most neighbours to either side that the background is taken from.
 const NEIGHBOURS: (usize, usize) = (8, 60);
@@ -24,6 +25,8 @@ const STRETCHES: usize = 8;
 const THROUGHOUT: f64 = 0.2;
 /// Shortest piece.
 const LEAST: usize = 64;
+/// Samples over which a sine is turned on from the first of them.
+const TURNED: usize = 256;
 
 /// Averaged periodogram of pieces, bin `k` at the frequency `k * step`.
 pub struct Periodogram {
@@ -86,20 +89,21 @@ impl Periodogram {
         REACH..self.power.len().saturating_sub(1)
     }
 
-    /// Peaks with at most this p-value over all bins, most significant first.
-    pub fn peaks(&self, alpha: f64) -> Vec<Peak> {
-        let bins = self.bins();
-        let mut peaks: Vec<(usize, Peak)> = bins
-            .clone()
+    /// Peaks with at most this p-value over all bins, most significant first. Each is looked at closely only when it is
+    /// asked for: a long recording has thousands.
+    pub fn peaks(&self, alpha: f64) -> impl Iterator<Item = Peak> {
+        let mut peaks: Vec<(usize, Peak)> = self
+            .bins()
             .filter(|&k| self.is_highest(k))
             .map(|k| (k, self.peak(k)))
-            .filter(|(k, peak)| peak.p_value <= alpha && self.is_throughout(*k, peak.frequency))
+            .filter(|(_, peak)| peak.p_value <= alpha)
             .collect();
         peaks.sort_by(|a, b| {
             let height = |k: usize| self.power[k] / self.background[k];
             a.1.p_value.total_cmp(&b.1.p_value).then(height(b.0).total_cmp(&height(a.0)))
         });
-        peaks.into_iter().map(|(_, peak)| peak).collect()
+        let throughout = |(k, peak): &(usize, Peak)| self.is_throughout(*k, peak.frequency);
+        peaks.into_iter().filter(throughout).map(|(_, peak)| peak)
     }
 
     fn is_highest(&self, k: usize) -> bool {
@@ -171,12 +175,21 @@ impl Periodogram {
 fn tapered_amplitude(stretch: &[f64], start: usize, turn: f64) -> (f64, f64) {
     let count = stretch.len() as f64;
     let mean = stretch.iter().sum::<f64>() / count.max(1.0);
-    stretch.iter().enumerate().fold((0.0, 0.0), |(cosine, sine), (k, value)| {
-        let taper = 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / count).cos();
-        let (s, c) = (turn * (start + k) as f64).sin_cos();
-        let value = taper * (value - mean);
-        (cosine + c * value, sine + s * value)
-    })
+    let mut sum = Complex::new(0.0, 0.0);
+    for (first, chunk) in stretch.chunks(TURNED).enumerate() {
+        let first = first * TURNED;
+        // Turned on from the first sample of a chunk: no sine for each sample, and errors do not add up.
+        let (mut wave, mut taper) = (
+            Complex::cis(turn * (start + first) as f64),
+            Complex::cis(2.0 * PI * (first as f64 + 0.5) / count),
+        );
+        let (on, along) = (Complex::cis(turn), Complex::cis(2.0 * PI / count));
+        for value in chunk {
+            sum += wave * ((0.5 - 0.5 * taper.re) * (value - mean));
+            (wave, taper) = (wave * on, taper * along);
+        }
+    }
+    (sum.re, sum.im)
 }
 
 /// Height of a Hann-tapered line this far from a bin, of 1 on it.
