@@ -58,16 +58,21 @@ pub fn screen<F: ModelFamily + ?Sized>(
         part.as_deref().map(|part| fit::evaluated(part, node.model.clone(), node.setting));
     let part = part.as_deref().zip(at_part.as_ref());
     let part = part.map(|(part, node)| Screening::new(family, part, node));
-    let mut changed = Vec::new();
-    let mut promises: Vec<Promise> = Vec::new();
-    let mut tried = 0;
-    for &term in candidates {
+    // Many a term has too few trials to keep all threads busy.
+    let each = candidates.par_iter().map(|&term| {
         let trials = ahead.trials(&node.model, term);
-        tried += trials.len();
+        let tried = trials.len();
         let trials = screening.likely(family, term, trials, part.as_ref());
-        promises.extend(screening.best(family, term, &trials, with_chance.then_some(&mut changed)));
+        let (promise, changed) = screening.best(family, term, &trials, with_chance);
+        (promise, changed, tried)
+    });
+    let (mut promises, mut changed, mut tried) = (Vec::new(), Vec::new(), 0);
+    for (promise, of_term, count) in each.collect::<Vec<_>>() {
+        promises.extend(promise);
+        changed.extend(of_term);
+        tried += count;
     }
-    promises.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    promises.sort_by(|a: &Promise, b| b.gain.total_cmp(&a.gain));
     let chance =
         if with_chance { Chance::of(&screening.left, &changed, tried) } else { Chance::default() };
     Screened { promises, chance }
@@ -183,13 +188,15 @@ impl<'a> Screening<'a> {
         errors.iter().zip(&self.node.errors).map(move |(e, old)| (e - old).clamp(-cut, cut))
     }
 
+    /// The best of a term's trials, and what all of them change where that is asked for.
     fn best<F: ModelFamily + ?Sized>(
         &self,
         family: &F,
         term: usize,
         trials: &[Trial],
-        mut changed: Option<&mut Vec<Changed>>,
-    ) -> Option<Promise> {
+        with_changes: bool,
+    ) -> (Option<Promise>, Vec<Changed>) {
+        let mut changed = Vec::new();
         let mut best: Option<Promise> = None;
         let mut starts: Vec<(f64, Fitted)> = Vec::new();
         let looked_at = self.looked_at(family, trials);
@@ -200,17 +207,15 @@ impl<'a> Screening<'a> {
                 best = Some(Promise { term, gain, starts: Vec::new(), leverage });
             }
             starts.push((gain, started(trial, &by)));
-            if let Some(changed) = &mut changed {
+            if with_changes {
                 let positive = columns.len() == 1 && positive(family, trial)[0];
                 changed.push(Changed { matrix: gram(&columns), columns, positive });
             }
         }
         starts.sort_by(|a, b| b.0.total_cmp(&a.0));
         starts.truncate(self.ahead.starts(term));
-        best.map(|best| Promise {
-            starts: starts.into_iter().map(|(_, start)| start).collect(),
-            ..best
-        })
+        let starts = starts.into_iter().map(|(_, start)| start).collect();
+        (best.map(|best| Promise { starts, ..best }), changed)
     }
 
     /// What a trial changes, weighed and freed of what the model's own parameters do.
