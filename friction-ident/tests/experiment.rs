@@ -46,7 +46,7 @@ fn found(family: &FrictionFamily) -> Discovery {
     // What is named first is asked; effects along the position take most of the time.
     let exclude = vec!["ripple".to_owned(), "position-friction".to_owned()];
     // A wide margin: what is within it counts as not told apart.
-    let thresholds = Thresholds { better: 100.0, ..Thresholds::default() };
+    let thresholds = Thresholds { better: 200.0, ..Thresholds::default() };
     let settings = Settings { base, exclude, thresholds, most: 2, ..Settings::default() };
     discover(family, &settings, &mut ()).unwrap()
 }
@@ -69,7 +69,8 @@ fn the_proposed_motion_tells_apart_what_the_recording_cannot() {
         let plant = table(truth, values);
         let first = record(&plant, &sines(), 1);
         let family = FrictionFamily::new(&first, &Options::default()).unwrap();
-        assert!(!names_only(&found(&family), truth, rival), "{truth} is no riddle");
+        let before = found(&family);
+        assert!(!names_only(&before, truth, rival), "{truth} is no riddle: {}", before.summary);
 
         let names = |names: [&str; 2]| names.map(str::to_owned).to_vec();
         let (below, rivals) = (names(["coulomb", "viscous"]), names([truth, rival]));

@@ -55,12 +55,12 @@ pub struct Outcome {
     pub wall_s: f64,
 }
 
-/// How a recording says that its force acts when nothing is said.
-fn hold(force: Force, told: Told) -> Hold {
+/// How a recording says that its force acts.
+fn hold(force: Force, told: Told) -> Option<Hold> {
     match (told, force) {
-        (Told::Nothing, _) => Hold::default(),
-        (Told::Truth, Force::Command) => Hold::ZeroOrder,
-        (Told::Truth, Force::Measured) => Hold::Sampled,
+        (Told::Nothing, _) => None,
+        (Told::Truth, Force::Command) => Some(Hold::ZeroOrder),
+        (Told::Truth, Force::Measured) => Some(Hold::Sampled),
     }
 }
 
@@ -80,9 +80,13 @@ fn ask(recorded: &Recorded, base: &[&str], seed: u64, asked: Asked) -> Result<Di
         Channel::new("force", force, recorded.run.force.clone()),
         Channel::new("position", position, recorded.run.position.clone()),
     ];
+    let hold = hold(recorded.force, asked.told);
     let recording = Recording::new("axis", recorded.run.time.clone(), channels)
-        .map_err(|error| error.to_string())?
-        .with_hold(hold(recorded.force, asked.told));
+        .map_err(|error| error.to_string())?;
+    let recording = match hold {
+        Some(hold) => recording.with_hold(hold),
+        None => recording,
+    };
     let recording = cut_at_gaps(&recording).map_err(|error| error.to_string())?;
     let family =
         FrictionFamily::new(&recording, &Options::default()).map_err(|error| error.to_string())?;

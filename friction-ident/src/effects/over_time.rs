@@ -204,9 +204,9 @@ mod tests {
         let mut values = vec![0.0; FREE];
         values[10..].fill(-1.7);
         let told = |name, values| words(name, values, (0.0, 23.0), "N");
-        let free = "it varies over a range of 1.7 N, most of all between 10 s and 11 s";
+        let free = "it varies over a range of 1.70 N, most of all between 10.0 s and 11.0 s";
         assert_eq!(told("friction-over-time", &values).unwrap(), free);
-        let step = "it changes by -1.7 N at 11.5 s";
+        let step = "it changes by -1.70 N at 11.5 s";
         assert_eq!(told("friction-step", &[-1.7, 0.5]).unwrap(), step);
         assert_eq!(told("stribeck", &[1.0]), None);
     }
