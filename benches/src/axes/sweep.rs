@@ -9,6 +9,11 @@ use super::judge::{Answer, Outcome};
 pub const HEAD: &str = "| thresholds | named first | with something besides | wrong | silent or unexplained | \
                         alarms where nothing is hidden | unlisted, honest | mean s |\n|---|---|---|---|---|---|---|---|";
 
+/// Without the last digits of a product.
+fn shown(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
 /// The thresholds as they are, and each of them at a half and at one and a half times its value.
 pub fn variations(thresholds: Thresholds) -> Vec<(String, Thresholds)> {
     let all = thresholds;
@@ -16,11 +21,16 @@ pub fn variations(thresholds: Thresholds) -> Vec<(String, Thresholds)> {
         [0.5, 1.5].map(|factor| {
             let mut varied = all;
             set(&mut varied, factor * value);
-            (format!("{name} {}", factor * value), varied)
+            (format!("{name} {}", shown(factor * value)), varied)
         })
     };
     let count = |name: &str, value: usize, set: &dyn Fn(&mut Thresholds, usize)| {
-        number(name, value as f64, &|varied, value| set(varied, value.round() as usize))
+        [0.5, 1.5].map(|factor| {
+            let value = (factor * value as f64).round() as usize;
+            let mut varied = all;
+            set(&mut varied, value);
+            (format!("{name} {value}"), varied)
+        })
     };
     let each = [
         number("better", all.better, &|varied, value| varied.better = value),
@@ -67,7 +77,7 @@ mod tests {
         assert_eq!(varied.len(), 17);
         let unlike = |k: usize| varied[k].1 != Thresholds::default();
         assert!((1..17).all(unlike) && !unlike(0));
-        assert_eq!((varied[11].0.as_str(), varied[11].1.beam), ("beam 1.5", 2));
+        assert_eq!((varied[11].0.as_str(), varied[11].1.beam), ("beam 2", 2));
     }
 
     #[test]

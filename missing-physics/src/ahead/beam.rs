@@ -178,7 +178,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// Chance of as large a difference on all of the recording.
     fn p_value(&self, screened: &Screened, difference: Difference) -> f64 {
-        screened.chance.p_value(difference.nats / self.ahead.share())
+        screened.chance.p_value(self.in_full(difference.nats))
+    }
+
+    /// What a gain on the part that is searched stands for on all of the recording: what is told is told of that.
+    fn in_full(&self, nats: f64) -> f64 {
+        nats / self.ahead.share()
     }
 
     /// The candidates beside a model, with what they would gain by chance.
@@ -217,7 +222,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 let outcome = if gains { Outcome::AsGood } else { Outcome::TooLittle };
                 self.note(size, &child, from, gain, outcome, "");
                 let effects = self.names(&child);
-                let nats = gain.nats;
+                let nats = self.in_full(gain.nats);
                 (self.tell)(&Event::Compared { rung: size, effects: &effects, nats });
                 if !gains {
                     continue;
@@ -365,13 +370,14 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 (term.unwrap_or(promise.term), node.model.clone(), gain)
             });
             let start = promise.starts.into_iter().next().unwrap_or_default();
-            rows.push(row.unwrap_or((promise.term, start, promise.gain)));
+            let (term, model, gain) = row.unwrap_or((promise.term, start, promise.gain));
+            rows.push((term, model, self.in_full(gain)));
         }
         rows.sort_by(|a, b| b.2.total_cmp(&a.2));
         Ranked {
             rows,
             chance: screened.chance,
-            points: from.errors.len() as f64 / from.correlation(),
+            points: self.in_full(from.errors.len() as f64 / from.correlation()),
         }
     }
 
@@ -430,22 +436,25 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             rung,
             candidate: self.names(candidate),
             compared_with: self.names(with),
-            difference: by.nats,
-            standard_error: by.error,
+            difference: self.in_full(by.nats),
+            standard_error: self.in_full(by.error),
             budget: self.budget(candidate),
             outcome,
             reason: reason.to_owned(),
         });
     }
 
-    /// An amplitude of an added effect that ended at the limit of its search, if any: what it would be is not known.
+    /// An amplitude that an added effect brought to the limit of its search, its own or one of the base, if any: what it
+    /// would be is not known (a mass of which nothing is left is none).
     fn at_limit(&self, base: &Node, node: &Node) -> Option<String> {
+        let before = scales::of(self.family, &base.model);
+        let was = |k: usize| before.get(k).is_some_and(scales::Moved::is_at_far_limit);
         let moved = scales::of(self.family, &node.model);
-        let parameters = node.model.parameters(self.family).zip(&moved);
-        let own = parameters.skip(base.model.values.len());
-        let mut limited =
-            own.filter(|((_, p), moved)| p.role == Role::Amplitude && moved.is_at_far_limit());
-        limited.next().map(|((term, parameter), _)| term.key(parameter))
+        let parameters = node.model.parameters(self.family).zip(&moved).enumerate();
+        let mut limited = parameters.filter(|(k, ((_, p), moved))| {
+            p.role == Role::Amplitude && moved.is_at_far_limit() && !was(*k)
+        });
+        limited.next().map(|(_, ((term, parameter), _))| term.key(parameter))
     }
 }
 

@@ -33,7 +33,8 @@ pub struct Decision {
     pub candidate: Vec<String>,
     /// Effects of the model that it was compared with.
     pub compared_with: Vec<String>,
-    /// Held-out log-likelihood of the candidate less that of the other, nats.
+    /// Held-out log-likelihood of the candidate less that of the other, nats; of a part of a long recording as much as
+    /// it stands for on all of it.
     pub difference: f64,
     /// Standard error of it, from blocks of 2 s.
     pub standard_error: f64,

@@ -105,7 +105,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         climb: Climb,
         last: &Node,
         costs: Vec<(usize, Difference, Node)>,
-        beside: Screened,
+        mut beside: Screened,
         rival: Option<String>,
     ) -> Found {
         let base = climb.base.clone();
@@ -140,6 +140,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .map(|set| Self::added(&base, set))
             .collect();
         let stopped = (self.stop)();
+        for promise in &mut beside.promises {
+            promise.leverage = promise.leverage.map(|leverage| self.in_full(leverage));
+        }
         let p_values = costs.iter().map(|(_, cost, _)| self.p_value(&beside, *cost)).collect();
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(last);

@@ -59,7 +59,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
         let gone = added.iter().filter(|t| !kept.contains(t));
         let gone: Vec<&str> = gone.map(|t| self.family.terms()[*t].name.as_str()).collect();
-        let nats = self.comparison.compare(last, &beside).nats;
+        let nats = self.in_full(self.comparison.compare(last, &beside).nats);
         let size = self.family.describe(rival.term, &self.values(&beside, rival));
         let does = if gone.is_empty() {
             format!("lowers the prediction error by {nats:.0} nats")
