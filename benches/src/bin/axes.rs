@@ -80,8 +80,11 @@ fn main() -> ExitCode {
         eprintln!("--jobs {}: {error}", args.jobs);
         return ExitCode::FAILURE;
     }
-    let done = if args.sweep { Ok(sweep(&jobs, &args)) } else { run(&jobs, &args) };
-    match done {
+    if args.sweep {
+        sweep(&jobs, &args);
+        return ExitCode::SUCCESS;
+    }
+    match run(&jobs, &args) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");

@@ -404,7 +404,7 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn reading(&self) -> Option<String> {
-        self.hold.map(|choice| choice.words())
+        self.hold.map(HoldChoice::words)
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {

@@ -191,7 +191,7 @@ impl Predictor {
             counted: Vec::new(),
             gains: Vec::new(),
             ladder: self.ladder.clone(),
-            noise: self.noise.clone(),
+            noise: self.noise,
             ..*self
         };
         thinned.counted = thinned.countable();

@@ -47,6 +47,8 @@ const FIRST: usize = 2;
 const RIVAL: f64 = 0.1;
 /// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
 const AGAIN: usize = 8;
+/// Share of an amplitude of every model below which nothing of it is left.
+const GONE: f64 = 0.01;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 
@@ -444,15 +446,18 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         });
     }
 
-    /// An amplitude that an added effect brought to the limit of its search, its own or one of the base, if any: what it
-    /// would be is not known (a mass of which nothing is left is none).
+    /// An amplitude of an added effect that ended at the limit of its search, or one of every model (a mass) of which an
+    /// added effect left nothing, if any: what it would be is not known.
     fn at_limit(&self, base: &Node, node: &Node) -> Option<String> {
-        let before = scales::of(self.family, &base.model);
-        let was = |k: usize| before.get(k).is_some_and(scales::Moved::is_at_far_limit);
         let moved = scales::of(self.family, &node.model);
         let parameters = node.model.parameters(self.family).zip(&moved).enumerate();
-        let mut limited = parameters.filter(|(k, ((_, p), moved))| {
-            p.role == Role::Amplitude && moved.is_at_far_limit() && !was(*k)
+        let mut limited = parameters.filter(|(k, ((term, p), moved))| {
+            let gone = |before: &f64| node.model.values[*k].abs() < GONE * before.abs();
+            p.role == Role::Amplitude
+                && match base.model.values.get(*k) {
+                    Some(before) => term.always && gone(before),
+                    None => moved.is_at_far_limit(),
+                }
         });
         limited.next().map(|(_, ((term, parameter), _))| term.key(parameter))
     }

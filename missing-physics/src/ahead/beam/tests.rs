@@ -164,6 +164,12 @@ fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
         let node = fit::evaluated(&plant, Plant::model(&[(WAVE, &[amplitude])]), 0);
         assert_eq!(search.at_limit(&base, &node).is_some(), known, "{amplitude}");
     }
+    // What every model has is not given up for an effect.
+    for (drive, known) in [(0.5, false), (0.005, true)] {
+        let model = Fitted { terms: vec![0, WAVE], values: vec![drive, 0.05] };
+        let node = fit::evaluated(&plant, model, 0);
+        assert_eq!(search.at_limit(&base, &node).as_deref(), known.then_some("drive.size"));
+    }
 }
 
 /// Asks to stop when the candidates of a rung have been looked at.
