@@ -52,6 +52,10 @@ const GONE: f64 = 0.01;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 
+/// What is told of rivals where time ran out before them.
+const UNASKED: &str =
+    "Whether something that varies freely with time does as much was not asked any more.";
+
 /// What searches that share an observer tell it by.
 pub type Tell<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
 
@@ -160,12 +164,14 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         loop {
             let (needed, costs) = self.prune(&climb, best);
             let last = self.plainest(needed);
-            if rival.is_none()
-                && let Some((without, text)) = self.rivalled(&climb, &last)
-            {
-                rival = Some(text);
-                best = without;
-                continue;
+            if rival.is_none() {
+                if let Some((without, text)) = self.rivalled(&climb, &last) {
+                    rival = Some(text);
+                    best = without;
+                    continue;
+                }
+                let unasked = (self.stop)() && !costs.is_empty() && !self.ahead.rivals().is_empty();
+                rival = unasked.then(|| UNASKED.to_owned());
             }
             let beside = self.beside(&last);
             let by_chance = |cost| self.p_value(&beside, cost) > self.thresholds.chance;
@@ -244,6 +250,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         // gains as much as the best.
         let by_chance = least.is_some_and(|p| p > HOPELESS);
         if ranked.is_empty() || by_chance || (self.stop)() || self.thresholds.most == 0 {
+            if (self.stop)() && size == 1 {
+                // Of none of them anything can be said.
+                let open = self.candidates.iter();
+                let open = open.filter(|term| self.family.joins(&climb.base.model, **term));
+                self.untried.extend(open);
+            }
             climb.ended = true;
             return;
         }

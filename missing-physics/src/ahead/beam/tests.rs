@@ -203,6 +203,7 @@ fn a_stopped_search_says_so_keeps_what_it_has_and_lists_what_was_not_tried() {
         } else {
             assert_eq!(discovery.added.len(), 1);
             assert!(discovery.summary.starts_with("Found so far: "), "{}", discovery.summary);
+            assert!(discovery.summary.contains("was not asked any more"), "{}", discovery.summary);
         }
     }
 }
