@@ -10,7 +10,7 @@ use crate::ahead::compare::Difference;
 use crate::ahead::decision::Outcome;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
 const PROMISED: f64 = 0.5;
@@ -93,11 +93,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             added.iter().copied().filter(|t| rival.kin != Some(self.main(*t))).collect();
         let values = self.values(free, rival);
         let with = |search: &Self, kept: &[usize]| {
-            let mut model = last.model.clone();
-            for term in added.iter().filter(|t| !kept.contains(t)) {
-                model = model.without(search.family, *term);
-            }
-            search.refit(&model.with(rival.term, &values), last.setting, STEPS.1)
+            let model = search.keeping(last, added, kept).with(rival.term, &values);
+            search.refit(&model, last.setting, STEPS.1)
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
         loop {
@@ -118,11 +115,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// The model with only these of its added effects, refitted.
     fn only(&self, base: &Node, last: &Node, kept: &[usize]) -> Node {
-        let mut model = last.model.clone();
-        for term in Self::added(base, last).iter().filter(|t| !kept.contains(t)) {
-            model = model.without(self.family, *term);
-        }
+        let model = self.keeping(last, &Self::added(base, last), kept);
         self.refit(&model, last.setting, STEPS.1)
+    }
+
+    /// A model without those of its added effects that are not kept.
+    fn keeping(&self, last: &Node, added: &[usize], kept: &[usize]) -> Fitted {
+        let gone = added.iter().filter(|term| !kept.contains(term));
+        gone.fold(last.model.clone(), |model, term| model.without(self.family, *term))
     }
 
     fn values(&self, free: &Node, rival: Rival) -> Vec<f64> {
