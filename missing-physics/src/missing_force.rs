@@ -34,6 +34,23 @@ pub struct Series {
     pub known: Vec<bool>,
 }
 
+impl Series {
+    /// Root mean squares of the force and of the half-widths of its 95 % bands, where it is known; nothing where it
+    /// nowhere is or numbers are not finite.
+    pub fn size(&self) -> Option<(f64, f64)> {
+        let (force, band) = (self.rms(&self.force), BAND * self.rms(&self.deviation));
+        (force.is_finite() && band.is_finite()).then_some((force, band))
+    }
+
+    /// Root mean square of values at the instants at which the force is known.
+    fn rms(&self, values: &[f64]) -> f64 {
+        let known = values.iter().zip(&self.known).filter(|(_, known)| **known);
+        let (square, count) =
+            known.fold((0.0, 0), |(sum, count), (value, _)| (sum + value * value, count + 1));
+        (square / f64::from(count)).sqrt()
+    }
+}
+
 /// How large the force is that a model lacks, and where. Only instants at which it is known count.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MissingForce {
@@ -66,15 +83,8 @@ impl MissingForce {
         series: &Series,
     ) -> Option<(Self, Vec<RegimeShare>)> {
         let known: Vec<usize> = (0..series.time.len()).filter(|k| series.known[*k]).collect();
-        let rms = |values: &[f64]| {
-            let square: f64 = known.iter().map(|k| values[*k] * values[*k]).sum();
-            (square / known.len() as f64).sqrt()
-        };
-        let (size, recorded) = (rms(&series.force), rms(&series.recorded));
-        let band = BAND * rms(&series.deviation);
-        if ![size, recorded, band].iter().all(|value| value.is_finite()) {
-            return None;
-        }
+        let (size, band) = series.size()?;
+        let recorded = Some(series.rms(&series.recorded)).filter(|rms| rms.is_finite())?;
         let grid = on_grid(family.time(), series);
         let kept: Vec<usize> =
             known.iter().copied().step_by(known.len().div_ceil(MOST_POINTS).max(1)).collect();

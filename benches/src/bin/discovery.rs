@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p benches --bin discovery -- --seeds 30 --levels clear,moderate`
 
+use std::path::{Path, PathBuf};
+
 use benches::discovery::cell::{self, Answer, Outcome};
 use benches::discovery::hidden::Case;
 use benches::discovery::motion::Excitation;
@@ -34,6 +36,9 @@ struct Args {
     /// Write every run that was not right to the standard error
     #[arg(long)]
     verbose: bool,
+    /// Write the recordings as CSV files instead of asking
+    #[arg(long, value_name = "DIR")]
+    write: Option<PathBuf>,
 }
 
 fn main() {
@@ -42,6 +47,14 @@ fn main() {
     let mut cases = if args.pairs { Case::pairs() } else { Case::singles() };
     cases.retain(|case| args.only.as_ref().is_none_or(|only| case.name.contains(only.as_str())));
     let levels: Vec<Level> = args.levels.iter().filter_map(|name| Level::parse(name)).collect();
+    if let Some(folder) = &args.write {
+        for (case, level) in cases.iter().flat_map(|case| levels.iter().map(move |l| (case, *l))) {
+            for seed in args.first..args.first + args.seeds {
+                save(folder, case, level, excitation, seed);
+            }
+        }
+        return;
+    }
     let bar = ProgressBar::new(cases.len() as u64 * levels.len() as u64 * args.seeds).with_style(
         ProgressStyle::with_template("{wide_bar} {pos}/{len} {eta} {msg}").expect("valid"),
     );
@@ -74,6 +87,18 @@ fn main() {
     bar.finish_and_clear();
     for (level, all) in &sums {
         println!("| **all listed** | {level:?} {}", cells(all));
+    }
+}
+
+/// Writes one recording, where there is one.
+fn save(folder: &Path, case: &Case, level: Level, excitation: Excitation, seed: u64) {
+    let table = cell::table(case, level, excitation, seed);
+    let Some(Ok(recording)) = table.map(|table| table.record(excitation)) else { return };
+    let name = case.name.replace([' ', ','], "-");
+    let path = folder.join(format!("{name}-{level:?}-{seed}.csv").to_lowercase());
+    let text = aep_data::to_csv(&recording);
+    if let Err(error) = aep_data::save(&path, text.as_bytes()) {
+        eprintln!("{error}");
     }
 }
 

@@ -11,11 +11,16 @@ use super::FrictionFamily;
 use crate::model::Model;
 use crate::predictor::{Predictor, Wave};
 
-/// What stands for no effect, what it is, and the effect that is one shape of it.
-const RIVALS: [(&str, &str, Option<&str>); 3] = [
-    ("friction-over-time", "a friction level that varies freely with time", Some("drift")),
-    ("friction-step", "a friction level that changes at one moment", Some("drift")),
-    ("force-over-time", "a force that varies freely with time", None),
+/// What stands for no effect, what it is, and the effects that are shapes of it.
+const RIVALS: [(&str, &str, &[&str]); 4] = [
+    ("friction-over-time", "a friction level that varies freely with time", &["drift"]),
+    ("friction-step", "a friction level that changes at one moment", &["drift"]),
+    ("force-over-time", "a force that varies freely with time", &[]),
+    (
+        "force-over-position",
+        "a force that varies freely along the stroke",
+        &["spring", "gravity-pendulum", "ripple"],
+    ),
 ];
 /// Effects with a period along the stroke.
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
@@ -226,14 +231,15 @@ impl Ahead for View<'_> {
 
     fn rivals(&self) -> Vec<Rival> {
         let term = |name: &str| self.family.terms.iter().position(|term| term.name == name);
-        let rival = |(name, words, kin): &(&str, &'static str, Option<&str>)| {
-            Some(Rival { term: term(name)?, words, kin: kin.and_then(term) })
+        let rival = |(name, words, kin): &(&str, &'static str, &[&str])| {
+            let kin = kin.iter().filter_map(|name| term(name)).collect();
+            Some(Rival { term: term(name)?, words, kin })
         };
         RIVALS.iter().filter_map(rival).collect()
     }
 
-    fn vanishes(&self, model: &Fitted) -> Option<String> {
-        self.family.closed_gap(model)
+    fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
+        self.family.vanishes(model)
     }
 
     fn starts(&self, term: usize) -> usize {

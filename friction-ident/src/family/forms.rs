@@ -41,6 +41,9 @@ const FREQUENCIES: (usize, f64, f64) = (10, 3.0, 0.25);
 const GAPS: (usize, f64, f64) = (16, 4.0, 0.01);
 /// A gap below this multiple of the least one is none.
 const CLOSED: f64 = 1.05;
+/// Damping ratio from which on a resonance has no half-power bandwidth, as its peak does not reach the square root of 2:
+/// sqrt((1 - 1/sqrt 2)/2).
+const SILENT: f64 = 0.383;
 /// Frequency of the contact at the end of a gap, Hz, and damping of contact and coupling.
 const CONTACT: f64 = 150.0;
 const DAMPING: (f64, f64) = (0.1, 0.05);
@@ -230,15 +233,38 @@ impl FrictionFamily {
         others.iter().filter_map(each).collect()
     }
 
-    /// Whether a gap was fitted with next to no width, in words: it is a coupling then.
-    pub(super) fn closed_gap(&self, model: &Fitted) -> Option<String> {
-        let gaps = model.terms.iter().map(|term| self.terms[*term].name.as_str());
-        gaps.filter(|name| name.starts_with("backlash")).find_map(|name| {
-            let place = self.place(model, name, "b")?;
-            let (term, parameter) = model.parameters(self).nth(place)?;
-            let closed = model.values[place] <= CLOSED * parameter.lower;
-            closed.then(|| format!("{} is as narrow as it may be", term.key(parameter)))
-        })
+    /// A second body that was fitted without what makes it one, and why, in words: a gap with next to no width or with a
+    /// contact that gives more than it (both are a coupling), or a coupling that is damped so much that nothing rings.
+    pub(super) fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
+        let said = |term: &usize| {
+            let name = self.terms[*term].name.as_str();
+            let of = |parameter: &str| self.value(model, name, parameter);
+            if name.starts_with("backlash") {
+                let gap = of("b")?;
+                let limits = self.terms[*term].parameters.iter().find(|p| p.name == "b")?;
+                if gap <= CLOSED * limits.lower {
+                    return Some(format!("{name}.b is as narrow as it may be"));
+                }
+                let (stiffness, load) = (of("k")?, of("m_L")?);
+                let gives = self.force() * load / (load + model.values[0]) / stiffness;
+                let soft = gives > 0.5 * gap;
+                return soft
+                    .then(|| format!("the contact of {name} gives more than its gap is wide"));
+            }
+            if name.starts_with("flexible-coupling") {
+                let damping = of("zeta")?;
+                let silent = damping >= SILENT;
+                return silent.then(|| format!("{name}.zeta is {damping:.2}: nothing rings"));
+            }
+            None
+        };
+        model.terms.iter().find_map(|term| Some((*term, said(term)?)))
+    }
+
+    /// Rms of the recorded force.
+    fn force(&self) -> f64 {
+        let force = &self.prepared.force;
+        (force.iter().map(|f| f * f).sum::<f64>() / force.len().max(1) as f64).sqrt()
     }
 
     /// Index of a parameter of a term in a model's values.

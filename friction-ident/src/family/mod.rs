@@ -38,7 +38,7 @@ pub use preparation::{PreparationError, Prepared};
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
-use crate::effects::over_time::{self, RIVALS};
+use crate::effects::free::{self, RIVALS, Span};
 use crate::effects::{Effect, Library, Slot};
 use crate::model::{MASS, Model, ModelError, address};
 
@@ -475,9 +475,11 @@ impl ModelFamily for FrictionFamily {
     fn describe(&self, term: usize, values: &[f64]) -> String {
         let about = &self.terms[term];
         let unit = about.parameters.first().map_or("", |parameter| &parameter.unit);
-        let time = self.recording.time();
-        let span = time.first().copied().zip(time.last().copied());
-        let rival = span.and_then(|span| over_time::words(&about.name, values, span, unit));
+        let moment = |name| self.fixed(name).unwrap_or_default();
+        let time = Span { begin: moment("begin"), end: moment("finish"), unit: "s" };
+        let length = if self.axis == Axis::Rotary { "rad" } else { "m" };
+        let stroke = Span { begin: self.stroke.0, end: self.stroke.1, unit: length };
+        let rival = free::words(&about.name, values, (time, stroke), unit);
         rival.unwrap_or_else(|| words::describe(about, values))
     }
 

@@ -164,6 +164,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         loop {
             let (needed, costs) = self.prune(&climb, best);
             let last = self.plainest(needed);
+            if let Some((term, reason)) = self.refused(&climb.base, &last) {
+                // Its last fit took it there.
+                let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
+                if let Some((_, cost, without)) = costs.iter().find(is).or(costs.last()) {
+                    let (size, cost) = (costs.len() - 1, negative(*cost));
+                    self.note(size, without, &last, cost, Outcome::NotIdentifiable, &reason);
+                    best = without.clone();
+                    continue;
+                }
+            }
             if rival.is_none() {
                 if let Some((without, text)) = self.rivalled(&climb, &last) {
                     rival = Some(text);
@@ -215,10 +225,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
             for child in children {
                 let gain = self.comparison.compare(from, &child);
-                let limited = self.at_limit(&climb.base, &child);
-                let limited = limited
-                    .map(|parameter| format!("{parameter} ended at the limit of its search"));
-                if let Some(reason) = limited.or_else(|| self.ahead.vanishes(&child.model)) {
+                if let Some((_, reason)) = self.refused(&climb.base, &child) {
                     self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
                     if gain.nats > self.thresholds.better && size == 1 {
                         let effects = self.names(&child).join(" + ");
@@ -458,20 +465,29 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         });
     }
 
-    /// An amplitude of an added effect that ended at the limit of its search, or one of every model (a mass) of which an
-    /// added effect left nothing, if any: what it would be is not known.
-    fn at_limit(&self, base: &Node, node: &Node) -> Option<String> {
+    /// The effect of a set that is not one as it was fitted, and why, if any: an amplitude ended at the limit of its
+    /// search, what makes it that effect is gone (a gap of no width), or it left nothing of what every model has (a
+    /// mass).
+    fn refused(&self, base: &Node, node: &Node) -> Option<(usize, String)> {
         let moved = scales::of(self.family, &node.model);
         let parameters = node.model.parameters(self.family).zip(&moved).enumerate();
-        let mut limited = parameters.filter(|(k, ((term, p), moved))| {
-            let gone = |before: &f64| node.model.values[*k].abs() < GONE * before.abs();
-            p.role == Role::Amplitude
-                && match base.model.values.get(*k) {
-                    Some(before) => term.always && gone(before),
-                    None => moved.is_at_far_limit(),
+        let limited = parameters.filter(|(_, ((_, p), _))| p.role == Role::Amplitude).find_map(
+            |(k, ((term, parameter), moved))| match base.model.values.get(k) {
+                Some(before) => {
+                    let gone = term.always && node.model.values[k].abs() < GONE * before.abs();
+                    let last = node.model.terms.last().filter(|_| gone)?;
+                    Some((*last, format!("nothing of {} is left", term.key(parameter))))
                 }
-        });
-        limited.next().map(|(_, ((term, parameter), _))| term.key(parameter))
+                None if moved.is_at_far_limit() => {
+                    let of = |t: &&usize| std::ptr::eq(&self.family.terms()[**t], term);
+                    let term_at = node.model.terms.iter().find(of)?;
+                    let key = term.key(parameter);
+                    Some((*term_at, format!("{key} ended at the limit of its search")))
+                }
+                None => None,
+            },
+        );
+        limited.or_else(|| self.ahead.vanishes(&node.model))
     }
 }
 

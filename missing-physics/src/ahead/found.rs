@@ -115,13 +115,18 @@ impl Found {
         }
         let before = std::iter::once(&self.base).chain(&self.rungs);
         self.gains = before.zip(&self.rungs).map(|(a, b)| comparison.compare(a, b)).collect();
-        self.place(ahead, thresholds);
+        self.place(family, ahead, thresholds);
     }
 
     /// Where the last model fails, and whether it does at all.
-    pub fn place(&mut self, ahead: &dyn Ahead, thresholds: &Thresholds) {
+    pub fn place<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
         let top = self.rungs.last().unwrap_or(&self.base);
-        self.places = local::places(ahead, top, thresholds.local);
+        self.places = local::places(ahead, top, thresholds.local, &family.quantity().unit);
         self.places.splice(0..0, self.rival.clone());
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
@@ -147,7 +152,7 @@ impl Found {
             self.base.scale / ahead.budget(),
             top.scale / ahead.budget(),
         ));
-        self.places = local::places(ahead, &self.base, thresholds.local);
+        self.places = local::places(ahead, &self.base, thresholds.local, &family.quantity().unit);
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();

@@ -1,5 +1,5 @@
 //! Whether what is left lies somewhere: a model may err no more than the sensors make it on the whole and still fail
-//! at one place, at one time, or in a few samples.
+//! at one place, at one time, in a few samples, or by a force too slow to be seen from one sample to the next.
 
 use super::Ahead;
 use super::node::Node;
@@ -14,13 +14,20 @@ const ALONE: f64 = 8.0;
 /// Share of the squared error in so few samples from which they are told as faults of the sampling.
 const FAULTS: (f64, f64) = (0.5, 0.01);
 
-/// Places where a model errs more than `factor` times what the sensors make, the worst first, in words.
-pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64) -> Vec<String> {
+/// Places where a model errs more than `factor` times what the sensors make, the worst first, in words; before them the
+/// force that it lacks (in `unit`), where that is as much larger than its band.
+pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<String> {
     let budget = ahead.budget();
     let time = ahead.instants().iter().map(|(time, _)| *time).collect();
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
     let mut worst: Vec<(f64, String)> = Vec::new();
+    let lacks = ahead.missing_force(&node.model, node.setting).and_then(|series| series.size());
+    if let Some((rms, band)) = lacks.filter(|(rms, band)| *rms > factor * band) {
+        let (rms, band) = (quantity(rms, unit), quantity(band, unit));
+        let text = format!("It lacks {rms} (rms) beyond doubt: that is known to ±{band}.");
+        worst.push((f64::INFINITY, text));
+    }
     worst.extend(ahead.faults().map(|text| (f64::INFINITY, text)));
     if let Some(share) = faults(&node.errors) {
         let text = format!(

@@ -80,8 +80,8 @@ pub trait Ahead: Sync {
         Vec::new()
     }
 
-    /// Why the term that was added last is none as it was fitted (a gap of no width), in words.
-    fn vanishes(&self, _model: &Fitted) -> Option<String> {
+    /// A term of a model that is no such effect as it was fitted (a gap of no width), and why, in words.
+    fn vanishes(&self, _model: &Fitted) -> Option<(usize, String)> {
         None
     }
 
@@ -121,14 +121,14 @@ pub trait Ahead: Sync {
 
 /// A term that stands for no effect (a friction level that varies freely with time): where it predicts as well as the
 /// effects that were found the recording does not show them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rival {
     /// The term. Its values are amplitudes, 0 where there is nothing.
     pub term: usize,
     /// What it is, in words.
     pub words: &'static str,
-    /// The effect that is one shape of it.
-    pub kin: Option<usize>,
+    /// The effects that are shapes of it.
+    pub kin: Vec<usize>,
 }
 
 /// A few columns for each of many trials.

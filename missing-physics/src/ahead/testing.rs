@@ -237,7 +237,7 @@ impl Ahead for Plant {
         Some(model.without(self, WAVE).with(BENT, &[size, 0.0]))
     }
     fn rivals(&self) -> Vec<Rival> {
-        vec![Rival { term: RIVAL, words: "a wave less a beat", kin: Some(PUSH) }]
+        vec![Rival { term: RIVAL, words: "a wave less a beat", kin: vec![PUSH] }]
     }
 }
 

@@ -171,7 +171,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             untried: self.untried.into_iter().collect(),
             stopped,
         };
-        found.place(self.ahead, &self.thresholds);
+        found.place(self.family, self.ahead, &self.thresholds);
         found
     }
 }

@@ -20,14 +20,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// stand.
     pub(super) fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<(Node, String)> {
         let rivals = self.ahead.rivals();
-        rivals.into_iter().find_map(|rival| self.without_rivalled(climb, last, rival))
+        rivals.iter().find_map(|rival| self.without_rivalled(climb, last, rival))
     }
 
     fn without_rivalled(
         &mut self,
         climb: &Climb,
         last: &Node,
-        rival: Rival,
+        rival: &Rival,
     ) -> Option<(Node, String)> {
         let base = &climb.base;
         let added = Self::added(base, last);
@@ -46,11 +46,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if !added.is_empty() && (gone == 0 || !self.does_as_much(last, &beside, gone, rival)) {
             return None;
         }
-        if let Some(kin) = added.iter().copied().find(|t| rival.kin == Some(self.main(*t))) {
-            let alone = self.only(base, last, &[kept.as_slice(), &[kin]].concat());
+        let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
+        if !kin.is_empty() {
+            let shapes = [kept.as_slice(), &kin].concat();
+            let alone = self.only(base, last, &shapes);
             let clear = self.thresholds.clear(self.comparison.compare(base, &beside).nats);
             if self.comparison.compare(&alone, &beside).nats <= clear {
-                kept.push(kin);
+                kept = shapes;
             }
         }
         if !added.is_empty() && kept.len() == added.len() {
@@ -72,7 +74,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// Whether a model with the rival predicts as well as the last one, or better where it makes up for no more than one
     /// effect.
-    fn does_as_much(&mut self, last: &Node, with: &Node, instead_of: usize, rival: Rival) -> bool {
+    fn does_as_much(&mut self, last: &Node, with: &Node, instead_of: usize, rival: &Rival) -> bool {
         let by = self.comparison.compare(last, with);
         let better = self.thresholds.better;
         let needed = if instead_of > 1 { -better } else { better };
@@ -87,10 +89,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         added: &[usize],
         last: &Node,
         free: &Node,
-        rival: Rival,
+        rival: &Rival,
     ) -> (Vec<usize>, Node) {
         let mut kept: Vec<usize> =
-            added.iter().copied().filter(|t| rival.kin != Some(self.main(*t))).collect();
+            added.iter().copied().filter(|t| !self.is_kin(*t, rival)).collect();
         let values = self.values(free, rival);
         let with = |search: &Self, kept: &[usize]| {
             let model = search.keeping(last, added, kept).with(rival.term, &values);
@@ -113,6 +115,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
     }
 
+    /// Whether an effect is a shape of a rival.
+    fn is_kin(&self, term: usize, rival: &Rival) -> bool {
+        rival.kin.contains(&self.main(term))
+    }
+
     /// The model with only these of its added effects, refitted.
     fn only(&self, base: &Node, last: &Node, kept: &[usize]) -> Node {
         let model = self.keeping(last, &Self::added(base, last), kept);
@@ -125,7 +132,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         gone.fold(last.model.clone(), |model, term| model.without(self.family, *term))
     }
 
-    fn values(&self, free: &Node, rival: Rival) -> Vec<f64> {
+    fn values(&self, free: &Node, rival: &Rival) -> Vec<f64> {
         let position = free.model.terms.iter().position(|term| *term == rival.term);
         position
             .map_or_else(Vec::new, |k| free.model.values[free.model.range(self.family, k)].to_vec())

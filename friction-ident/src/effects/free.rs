@@ -1,14 +1,14 @@
-//! What varies freely with time: no effect, but what an effect must be told from.
+//! What varies freely, with time or along the stroke: no effect, but what an effect must be told from.
 //!
-//! A friction level or a force that may be anything at every moment explains nothing. Where it predicts as well as
-//! effects do that were found, the recording does not show those effects: see [`missing_physics::ahead::Rival`].
+//! A friction level or a force that may be anything at every moment or place explains nothing. Where it predicts as
+//! well as effects do that were found, the recording does not show those effects: see [`missing_physics::ahead::Rival`].
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use missing_physics::quantity::quantity;
 
-/// Knots over the recording; straight between them, 0 at the first one, so that nothing competes with `coulomb` or
-/// `offset`.
+/// Knots over the recording or the stroke; straight between them, 0 at the first one, so that nothing competes with
+/// `coulomb` or `offset`.
 const KNOTS: usize = 24;
 const FREE: usize = KNOTS - 1;
 
@@ -24,8 +24,13 @@ pub struct ForceOverTime;
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionStep;
 
+/// A force along the stroke: a stop, soft ends, a cover, whatever else is no spring and no ripple.
+#[derive(Clone, Copy, Debug)]
+pub struct ForceOverPosition;
+
 /// What no effect of the library may be mistaken for.
-pub static RIVALS: [&dyn Effect; 3] = [&FrictionOverTime, &FrictionStep, &ForceOverTime];
+pub static RIVALS: [&dyn Effect; 4] =
+    [&FrictionOverTime, &FrictionStep, &ForceOverTime, &ForceOverPosition];
 
 /// Share of the recording over which a step rises: a fit has to feel where it is.
 const RISE: f64 = 0.005;
@@ -39,9 +44,14 @@ const fn moment(name: &'static str, meaning: &'static str, default: f64) -> Para
     Parameter::fixed(name, meaning, Quantity::Time, (-1e9, 1e9), default)
 }
 
-const fn parameters() -> [Parameter; KNOTS + 1] {
-    let mut all = [BEGIN; KNOTS + 1];
-    all[1] = END;
+const fn place(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
+    Parameter::fixed(name, meaning, Quantity::Length, (-10.0, 10.0), default)
+}
+
+/// Free values beyond those at the begin of `span`.
+const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 1] {
+    let mut all = [span[0]; KNOTS + 1];
+    all[1] = span[1];
     let mut k = 0;
     while k < FREE {
         all[k + 2] = Parameter::signed(
@@ -56,13 +66,17 @@ const fn parameters() -> [Parameter; KNOTS + 1] {
     all
 }
 
-static PARAMETERS: [Parameter; KNOTS + 1] = parameters();
+static OVER_TIME: [Parameter; KNOTS + 1] = parameters([BEGIN, END]);
+static OVER_POSITION: [Parameter; KNOTS + 1] = parameters([
+    place("start", "begin of the stroke", 0.0),
+    place("end", "end of the stroke", 0.3),
+]);
 
 static FRICTION: About = About {
     name: "friction-over-time",
     title: "friction level that varies freely with time",
     equation: "k(t) s, k straight between 24 knots over the recording, k = 0 at its begin",
-    parameters: &PARAMETERS,
+    parameters: &OVER_TIME,
     slots: &[Slot::FrictionLevel],
     shows: "(residual x sign of velocity) against time",
     reference: "L. Ljung, System Identification, 1999, ch. 10.3 (time-varying parameters)",
@@ -72,10 +86,20 @@ static FORCE: About = About {
     name: "force-over-time",
     title: "force that varies freely with time",
     equation: "k(t), straight between 24 knots over the recording, k = 0 at its begin",
-    parameters: &PARAMETERS,
+    parameters: &OVER_TIME,
     slots: &[Slot::SmoothForce],
     shows: "the residual against time",
     reference: "L. Ljung, System Identification, 1999, ch. 10.3 (time-varying parameters)",
+};
+
+static ALONG: About = About {
+    name: "force-over-position",
+    title: "force that varies freely along the stroke",
+    equation: "k(x), straight between 24 knots over the stroke, k = 0 at its begin",
+    parameters: &OVER_POSITION,
+    slots: &[Slot::SmoothForce],
+    shows: "the residual against position",
+    reference: "L. Ljung, System Identification, 1999, ch. 5.4 (basis functions)",
 };
 
 const BEGIN: Parameter = moment("begin", "begin of the recording", 0.0);
@@ -124,7 +148,7 @@ impl Effect for FrictionOverTime {
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
         for (i, level) in level.iter_mut().enumerate() {
-            *level += at(p, m, i);
+            *level += at(p, m.time, i);
         }
     }
 }
@@ -136,29 +160,58 @@ impl Effect for ForceOverTime {
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
         for (i, force) in out.force.iter_mut().enumerate() {
-            *force += at(p, m, i);
+            *force += at(p, m.time, i);
         }
     }
 }
 
-/// The value in lane `i`.
-fn at(p: Parameters<'_>, m: &Motion<'_>, i: usize) -> f64 {
+impl Effect for ForceOverPosition {
+    fn about(&self) -> &'static About {
+        &ALONG
+    }
+
+    fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
+        for (i, force) in out.force.iter_mut().enumerate() {
+            *force += at(p, m.position, i);
+        }
+    }
+}
+
+/// The value in lane `i` at its time or place.
+fn at(p: Parameters<'_>, along: &[f64], i: usize) -> f64 {
     let (begin, end) = (p.get(0)[i], p.get(1)[i]);
-    let place = ((m.time[i] - begin) / (end - begin)).clamp(0.0, 1.0) * FREE as f64;
+    let place = ((along[i] - begin) / (end - begin)).clamp(0.0, 1.0) * FREE as f64;
     let knot = (place as usize).min(FREE - 1);
     let value = |k: usize| if k == 0 { 0.0 } else { p.get(k + 1)[i] };
     let part = place - knot as f64;
     (1.0 - part) * value(knot) + part * value(knot + 1)
 }
 
-/// What a rival was found to be, in words; `span` are begin and end of the recording. Nothing for an effect.
-pub fn words(name: &str, values: &[f64], span: (f64, f64), unit: &str) -> Option<String> {
-    let moment = |share: f64| quantity(span.0 + (span.1 - span.0) * share, "s");
+/// Begin and end of what a rival may vary over, and the unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Span<'a> {
+    /// First value.
+    pub begin: f64,
+    /// Last value.
+    pub end: f64,
+    /// Unit of both.
+    pub unit: &'a str,
+}
+
+/// What a rival was found to be, in words; over the recording and the stroke. Nothing for an effect.
+pub fn words(
+    name: &str,
+    values: &[f64],
+    (time, stroke): (Span<'_>, Span<'_>),
+    unit: &str,
+) -> Option<String> {
+    let span = if name == ALONG.name { stroke } else { time };
+    let moment = |share: f64| quantity(span.begin + (span.end - span.begin) * share, span.unit);
     match (name, values) {
         ("friction-step", [change, share]) => {
             Some(format!("it changes by {} at {}", quantity(*change, unit), moment(*share)))
         }
-        ("friction-over-time" | "force-over-time", _) => {
+        ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
             let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
             let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
             let high = knots.iter().fold(f64::NEG_INFINITY, |high, v| high.max(*v));
@@ -196,6 +249,8 @@ mod tests {
             let point = Point { time, ..Point::at(0.0, 0.1) };
             assert!((level(&FrictionOverTime, &p, point) - exact).abs() < 1e-12, "{time}");
             assert!((smooth(&ForceOverTime, &p, point).0 - exact).abs() < 1e-12, "{time}");
+            let place = Point::at(time, 0.1);
+            assert!((smooth(&ForceOverPosition, &p, place).0 - exact).abs() < 1e-12, "{time}");
         }
     }
 
@@ -203,9 +258,12 @@ mod tests {
     fn words_say_how_much_and_when() {
         let mut values = vec![0.0; FREE];
         values[10..].fill(-1.7);
-        let told = |name, values| words(name, values, (0.0, 23.0), "N");
+        let span = |end, unit| Span { begin: 0.0, end, unit };
+        let told = |name, values| words(name, values, (span(23.0, "s"), span(0.23, "m")), "N");
         let free = "it varies over a range of 1.70 N, most of all between 10.0 s and 11.0 s";
         assert_eq!(told("friction-over-time", &values).unwrap(), free);
+        let along = "it varies over a range of 1.70 N, most of all between 100 mm and 110 mm";
+        assert_eq!(told("force-over-position", &values).unwrap(), along);
         let step = "it changes by -1.70 N at 11.5 s";
         assert_eq!(told("friction-step", &[-1.7, 0.5]).unwrap(), step);
         assert_eq!(told("stribeck", &[1.0]), None);
