@@ -299,3 +299,63 @@ fn hump(form: &str, height: Option<f64>, speed: Option<f64>, exponent: Option<f6
     };
     height.unwrap_or(0.0) * share
 }
+
+#[cfg(test)]
+mod tests {
+    use missing_physics::{Channel, Recording};
+
+    use super::*;
+    use crate::family::Options;
+
+    /// A mass of 20 kg on a sine with counts of 1 um, 20 N (rms) at 1 ms.
+    fn family() -> FrictionFamily {
+        let time: Vec<f64> = (0..4000).map(|k| f64::from(k) * 1e-3).collect();
+        let (w, size) = (2.0 * std::f64::consts::PI, 0.0358);
+        let position = time.iter().map(|t| (size * (w * t).sin() / 1e-6).round() * 1e-6);
+        let force = time.iter().map(|t| -20.0 * size * w * w * (w * t).sin());
+        let channel = |name: &str, unit: &str, values: Vec<f64>| Channel::new(name, unit, values);
+        let channels = vec![
+            channel("force", "N", force.collect()),
+            channel("position", "m", position.collect()),
+        ];
+        let recording = Recording::new("sine", time.clone(), channels).unwrap();
+        FrictionFamily::new(&recording, &Options::default()).unwrap()
+    }
+
+    /// Why a second body of 10 kg behind 20 kg is none, with these values in the place of sensible ones.
+    fn said(family: &FrictionFamily, name: &str, values: &[(&str, f64)]) -> Option<String> {
+        let term = family.terms.iter().position(|term| term.name == name).unwrap();
+        let value = |p: &Parameter| {
+            let given = values.iter().find(|(name, _)| *name == p.name).map(|(_, value)| *value);
+            given.unwrap_or(if p.name == "m_L" { 10.0 } else { p.start })
+        };
+        let values: Vec<f64> = family.terms[term].parameters.iter().map(value).collect();
+        let model = Fitted { terms: vec![0], values: vec![20.0] }.with(term, &values);
+        let (refused, why) = family.vanishes(&model)?;
+        assert_eq!(refused, term);
+        Some(why)
+    }
+
+    #[test]
+    fn a_coupling_must_ring() {
+        let family = family();
+        for name in ["flexible-coupling", "flexible-coupling:friction", "flexible-coupling:load"] {
+            assert_eq!(said(&family, name, &[("zeta", 0.3)]), None, "{name}");
+            let why = said(&family, name, &[("zeta", 0.5)]).unwrap();
+            assert_eq!(why, format!("{name}.zeta is 0.50: nothing rings"));
+        }
+    }
+
+    #[test]
+    fn a_gap_must_be_wider_than_its_contact_gives() {
+        // A third of the force bends the contact: 7 N.
+        let family = family();
+        let gap = |k: f64, b: f64| said(&family, "backlash:two-mass", &[("k", k), ("b", b)]);
+        assert_eq!(gap(1e7, 3e-5), None);
+        assert_eq!(gap(1e6, 3e-5), None);
+        assert!(gap(3e5, 3e-5).unwrap().contains("gives more than its gap"));
+        let least = family.terms.iter().find(|term| term.name == "backlash:two-mass").unwrap();
+        let least = least.parameters.iter().find(|p| p.name == "b").unwrap().lower;
+        assert!(gap(1e9, least).unwrap().contains("as narrow as it may be"));
+    }
+}

@@ -207,7 +207,7 @@ impl Shrunk {
 mod tests {
     use super::*;
     use crate::ahead::fit::Fitter;
-    use crate::ahead::testing::{BEAT, NOISE, Plant, WAVE};
+    use crate::ahead::testing::{BEAT, BENT, NOISE, Plant, TONE, WAVE};
 
     const WEAK: f64 = 0.01;
 
@@ -253,5 +253,18 @@ mod tests {
             })
             .count();
         assert!(above <= 5, "{above} of 100");
+    }
+
+    #[test]
+    fn an_amplitude_is_expected_to_be_like_those_of_the_same_effect() {
+        let plant = Plant::new(1, &[]);
+        let model = Plant::model(&[(BENT, &[0.05, 0.01]), (TONE, &[0.2, 4.0])]);
+        let shrunk = Shrunk::of(&plant, &model);
+        let of = |square: f64, count: f64| count / square;
+        let bent = of(0.05 * 0.05 + 0.01 * 0.01, 2.0);
+        // What every model has and a frequency are not drawn to 0.
+        assert_eq!(shrunk.curvature, [0.0, bent, bent, of(0.2 * 0.2, 1.0), 0.0]);
+        assert!((shrunk.loss(&model.values) - 1.5).abs() < 1e-12);
+        assert_eq!(shrunk.loss(&[7.0, 0.0, 0.0, 0.0, 9.0]), 0.0);
     }
 }

@@ -77,6 +77,9 @@ pub fn faults(errors: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ahead::fit;
+    use crate::ahead::testing::Plant;
+    use crate::missing_force::Series;
 
     #[test]
     fn the_bin_with_the_largest_errors_is_found() {
@@ -93,5 +96,24 @@ mod tests {
         assert_eq!(faults(&errors), None);
         errors[700] = 100.0;
         assert!(faults(&errors).unwrap() > 0.8);
+    }
+
+    #[test]
+    fn a_force_that_is_twice_its_band_is_told_and_a_smaller_one_is_not() {
+        let mut plant = Plant::new(1, &[]);
+        let node = fit::evaluated(&plant, Plant::model(&[]), 0);
+        assert_eq!(places(&plant, &node, 2.0, "V"), [""; 0]);
+        for (force, told) in [(1.9, false), (2.1, true)] {
+            plant.lacks = Some(Series {
+                time: vec![0.0, 0.1, 0.2],
+                force: vec![force, 99.0, -force],
+                deviation: vec![1.0 / 1.96, 50.0, 1.0 / 1.96],
+                recorded: vec![9.0; 3],
+                known: vec![true, false, true],
+            });
+            let places = places(&plant, &node, 2.0, "V");
+            assert_eq!(places.len(), usize::from(told), "{places:?}");
+            assert!(places.iter().all(|text| text.contains("2.10 V (rms)")), "{places:?}");
+        }
     }
 }

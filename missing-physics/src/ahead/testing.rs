@@ -12,6 +12,7 @@ use super::{Ahead, Rival, Trial, trials};
 use crate::family::{
     Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term as About,
 };
+use crate::missing_force::Series;
 
 /// Samples and their distance, s.
 pub const SAMPLES: usize = 2000;
@@ -82,6 +83,10 @@ pub struct Plant {
     instants: Vec<(f64, usize)>,
     coordinates: Vec<Coordinate>,
     regimes: Vec<Regime>,
+    /// A term that is no effect in its plain form.
+    pub none: Option<usize>,
+    /// The force that every model lacks.
+    pub lacks: Option<Series>,
 }
 
 fn about(name: &str, lower: f64, more: Option<Parameter>) -> About {
@@ -159,6 +164,8 @@ impl Plant {
             coordinates: vec![coordinate],
             regimes: vec![Regime { name: "all".into(), member: vec![true; SAMPLES] }],
             time,
+            none: None,
+            lacks: None,
         }
     }
 
@@ -238,6 +245,12 @@ impl Ahead for Plant {
     }
     fn rivals(&self) -> Vec<Rival> {
         vec![Rival { term: RIVAL, words: "a wave less a beat", kin: vec![PUSH] }]
+    }
+    fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
+        self.none.filter(|term| model.terms.contains(term)).map(|term| (term, "it is none".into()))
+    }
+    fn missing_force(&self, _: &Fitted, _: usize) -> Option<Series> {
+        self.lacks.clone()
     }
 }
 

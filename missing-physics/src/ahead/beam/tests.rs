@@ -162,13 +162,14 @@ fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
     let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &|_| ());
     for (amplitude, known) in [(10.0, true), (0.05, false), (0.0, false)] {
         let node = fit::evaluated(&plant, Plant::model(&[(WAVE, &[amplitude])]), 0);
-        assert_eq!(search.at_limit(&base, &node).is_some(), known, "{amplitude}");
+        assert_eq!(search.refused(&base, &node).is_some(), known, "{amplitude}");
     }
     // What every model has is not given up for an effect.
     for (drive, known) in [(0.5, false), (0.005, true)] {
         let model = Fitted { terms: vec![0, WAVE], values: vec![drive, 0.05] };
         let node = fit::evaluated(&plant, model, 0);
-        assert_eq!(search.at_limit(&base, &node).as_deref(), known.then_some("drive.size"));
+        let why = search.refused(&base, &node).map(|(_, why)| why);
+        assert_eq!(why.as_deref(), known.then_some("nothing of drive.size is left"));
     }
 }
 
@@ -237,4 +238,15 @@ fn what_the_data_cannot_tell_apart_is_ambiguous_beside_whatever_base() {
         rivals.sort();
         assert_eq!(rivals, ["twin", "wave"]);
     }
+}
+
+#[test]
+fn an_effect_whose_plain_form_is_none_is_not_named_where_that_form_is_as_good() {
+    let mut plant = Plant::new(5, &[(BENT, &[0.05, 0.002])]);
+    assert_eq!(found(&plant, Thresholds::default(), 1).added, [WAVE]);
+    plant.none = Some(WAVE);
+    let found = found(&plant, Thresholds::default(), 1);
+    assert_eq!(found.added, [0; 0]);
+    let refused = found.decisions.iter().find(|d| d.reason == "it is none").unwrap();
+    assert_eq!(refused.outcome, Outcome::NotIdentifiable);
 }
