@@ -90,6 +90,7 @@
 
 mod aep;
 mod algorithm;
+mod best;
 mod border;
 mod budget;
 pub mod checkpoint;
@@ -114,6 +115,7 @@ mod scalar;
 mod selection;
 mod trace;
 pub mod trials;
+mod turn;
 mod wide;
 
 pub use aep::{

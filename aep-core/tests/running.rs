@@ -94,6 +94,32 @@ fn a_resumed_run_equals_the_uninterrupted_one() {
 }
 
 #[test]
+fn a_run_resumed_after_a_restart_equals_the_uninterrupted_one() {
+    let domain = Domain::cube(3, -5.12, 5.12).unwrap();
+    let dents = FnProblem::new(domain, |x: &[f64]| {
+        x.iter().map(|x| 10.0 + x * x - 10.0 * (std::f64::consts::TAU * x).cos()).sum()
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.ckpt");
+    for name in ["cma-es", "aep-practical-restarts"] {
+        let method = (aep_core::methods::find(name).unwrap().build)(8);
+        let whole = Driver::new(Budget::generations(900))
+            .run(&mut *start(&*method, &dents), &dents)
+            .unwrap();
+        let mut half = start(&*method, &dents);
+        Driver::new(Budget::generations(600))
+            .with_checkpoint(&path, 600)
+            .run(&mut *half, &dents)
+            .unwrap();
+        assert!(half.ask().len() > 8, "{name} has not restarted");
+        let resumed = Driver::new(Budget::generations(900))
+            .resume(&mut *start(&*method, &dents), &dents, &path)
+            .unwrap();
+        assert_eq!(without_time(resumed), without_time(whole), "{name}");
+    }
+}
+
+#[test]
 fn a_checkpoint_of_another_run_is_refused() {
     let problem = rosenbrock();
     let folder = tempfile::tempdir().unwrap();
