@@ -22,7 +22,9 @@
 //! **The task.** A [`Problem`] has a [`Domain`] and a cost to be minimised; a closure becomes one by
 //! [`FnProblem`], one that can fail by [`FallibleProblem`]. A component of the domain can be
 //! logarithmic, so that the search covers its decades evenly. A simulator that takes many positions
-//! at once overrides [`Problem::evaluate_batch`].
+//! at once overrides [`Problem::evaluate_batch`]. Constraints are put around a problem by
+//! [`Constrained`]. A cost that is a sum of squares is a [`LeastSquares`] task: searched like any other,
+//! then taken to the bottom of its valley by [`polish`].
 //!
 //! **The method.** What to run is a [`Method`]; [`methods`] has all by name.
 //!
@@ -95,12 +97,14 @@ mod border;
 mod budget;
 pub mod checkpoint;
 mod cma_es;
+mod constrained;
 mod de;
 mod domain;
 mod driver;
 mod engine;
 mod error;
 mod evaluate;
+mod least_squares;
 mod meta_ep;
 pub mod methods;
 mod mutation;
@@ -126,12 +130,16 @@ pub use border::Border;
 pub use budget::{Budget, Stagnation, StopReason};
 pub use checkpoint::CheckpointError;
 pub use cma_es::{CmaEs, Restarts};
+pub use constrained::Constrained;
 pub use de::{Control, De, Factors};
 pub use domain::{Domain, Scale};
 pub use driver::{Driver, Outcome, RunError, minimize};
 pub use engine::Engine;
 pub use error::{ConfigError, TellError};
 pub use evaluate::{Evaluator, Failures, Parallel, Serial, silence_caught_panics};
+pub use least_squares::{
+    FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, polish,
+};
 pub use meta_ep::{
     CommonRate, LearningRate, MetaEp, MetaEpMutation, SigmaUnit, StepSizes, UpdateOrder,
 };
