@@ -54,8 +54,10 @@
 //!
 //! let start = Start::new(slow.domain(), 1);
 //! let budget = Budget::evaluations(8_000).with_stagnation(50, 1e-12);
-//! let mut driver = Driver::new(budget)
-//!     .in_parallel()
+//! let driver = Driver::new(budget);
+//! # #[cfg(feature = "parallel")]
+//! let driver = driver.in_parallel();
+//! let mut driver = driver
 //!     .with_stop_flag(&ctrl_c)
 //!     .with_checkpoint(&checkpoint, 10)
 //!     .with_observer(|p: &Progress| println!("{} {}", p.generation, p.best_cost()));
@@ -79,6 +81,11 @@
 //! **One's own algorithm.** An [`Engine`] joins an [`Individual`] (what is remembered), a
 //! [`Mutation`] (how a child is made) and a [`Selection`] (who survives). The examples
 //! `own_mutation` and `own_selection` have about 30 lines each.
+//!
+//! # Features
+//!
+//! `parallel` (default): evaluations and trials on many threads, by rayon. Without it there is no
+//! [`Parallel`], trials run one after the other, and all results are the same to the bit.
 //!
 //! # What holds always
 //!
@@ -109,6 +116,8 @@ mod meta_ep;
 pub mod methods;
 mod mutation;
 mod observe;
+#[cfg(feature = "parallel")]
+mod parallel;
 mod points;
 mod population;
 mod problem;
@@ -136,7 +145,7 @@ pub use domain::{Domain, Scale};
 pub use driver::{Driver, Outcome, RunError, minimize};
 pub use engine::Engine;
 pub use error::{ConfigError, TellError};
-pub use evaluate::{Evaluator, Failures, Parallel, Serial, silence_caught_panics};
+pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
 pub use least_squares::{
     FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, polish,
 };
@@ -145,6 +154,8 @@ pub use meta_ep::{
 };
 pub use mutation::{Child, Mutation};
 pub use observe::{Observer, Progress};
+#[cfg(feature = "parallel")]
+pub use parallel::Parallel;
 pub use points::{Batch, Points};
 pub use population::{Individual, Population};
 pub use problem::{Errors, FallibleProblem, FnProblem, Problem};

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use aep_core::{
     Aep, Algorithm, Budget, CheckpointError, CmaEs, De, Domain, Driver, Failures, FallibleProblem,
-    FnProblem, MetaEp, Method, Outcome, Parallel, Problem, Progress, RunError, Scale, Start,
-    StopReason, minimize,
+    FnProblem, MetaEp, Method, Outcome, Problem, Progress, RunError, Scale, Start, StopReason,
+    minimize,
 };
 
 fn rosenbrock() -> impl Problem {
@@ -51,6 +51,7 @@ fn without_time(mut outcome: Outcome) -> Outcome {
     outcome
 }
 
+#[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let problem = rosenbrock();
@@ -58,7 +59,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         let run = |threads| {
             let mut driver = Driver::new(Budget::generations(150));
             if threads > 0 {
-                driver = driver.with_evaluator(Parallel::with_threads(threads).unwrap());
+                driver = driver.with_evaluator(aep_core::Parallel::with_threads(threads).unwrap());
             }
             without_time(driver.run(&mut *start(&*method, &problem), &problem).unwrap())
         };

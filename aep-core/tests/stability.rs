@@ -1,6 +1,5 @@
 //! What a seed gives today it gives tomorrow. A change here is a line in the changelog.
 
-use aep_core::trials::Plan;
 use aep_core::{Budget, Domain, Driver, FnProblem, Problem, Progress, Start, methods, minimize};
 
 fn valley() -> impl Problem {
@@ -65,8 +64,10 @@ fn the_same_seed_gives_the_recorded_course_through_restarts() {
     }
 }
 
+#[cfg(feature = "parallel")]
 #[test]
 fn a_trial_does_not_depend_on_how_many_there_are_or_on_the_threads() {
+    use aep_core::trials::Plan;
     let problem = valley();
     let method = (methods::find("aep-practical").unwrap().build)(0);
     let run = |trials, threads| {
