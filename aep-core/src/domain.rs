@@ -64,6 +64,9 @@ impl<T: Scalar> Domain<T> {
     }
 
     /// The cube [`lower`, `upper`]^`dimension`.
+    ///
+    /// # Errors
+    /// As [`Domain::new`].
     pub fn cube(dimension: usize, lower: T, upper: T) -> Result<Self, ConfigError> {
         Self::new(vec![lower; dimension], vec![upper; dimension])
     }
@@ -87,6 +90,9 @@ impl<T: Scalar> Domain<T> {
     }
 
     /// Names the components, for reports and traces.
+    ///
+    /// # Errors
+    /// When there is not one name per component.
     pub fn with_names<S: Into<String>>(
         mut self,
         names: impl IntoIterator<Item = S>,
