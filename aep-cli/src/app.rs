@@ -20,7 +20,7 @@ use crate::output;
 struct Cli {
     #[command(flatten)]
     global: Global,
-    /// An effect of your own as a line of text in a TOML file (see examples/cogging.toml); it joins the
+    /// An effect of your own as a line of text in a TOML file (`aep effects --help` shows one); it joins the
     /// library. May be given several times
     #[arg(long, global = true, value_name = "FILE")]
     effects_file: Vec<PathBuf>,

@@ -164,3 +164,8 @@ pub use restart::Restarting;
 pub use scalar::Scalar;
 pub use selection::{OneToOne, Selection, Ties, Tournament};
 pub use trace::{Trace, TraceFormat};
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -167,7 +167,8 @@ fn a_model_is_exported_with_its_schema_and_read_again() {
     assert_eq!(desk.json("exported.json")["$schema"], "model.schema.json");
     desk.aep("control --model exported.json --reference ramp:1mm/s").done();
     desk.aep("export --to schema model.schema.json").done();
-    let published = concat!(env!("CARGO_MANIFEST_DIR"), "/../schema/model.schema.json");
+    let published =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../friction-ident/schema/model.schema.json");
     let published: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(published).unwrap()).unwrap();
     assert_eq!(desk.json("model.schema.json"), published);

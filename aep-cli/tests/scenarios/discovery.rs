@@ -12,7 +12,7 @@ fn without_data_the_example_is_solved_and_the_truth_pointed_at() {
         assert!(run.done().contains(part), "{part}");
     }
     let (json, page) = (desk.json("out.json"), desk.read("out.html"));
-    let truth = include_str!("../../../examples/hidden/truth.json");
+    let truth = include_str!("../../examples/hidden/truth.json");
     let truth: serde_json::Value = serde_json::from_str(truth).unwrap();
     assert_eq!(json["verdict"], "effects_found");
     assert_eq!(json["added"][0], truth["hidden"]);
