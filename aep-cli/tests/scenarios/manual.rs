@@ -1,8 +1,6 @@
 //! What is made of the arguments, and the commands that the READMEs tell.
 
-use std::path::Path;
-
-use crate::harness::Desk;
+use crate::harness::{Desk, repository};
 
 /// Every command, from the program's own help.
 fn commands(desk: &Desk) -> Vec<String> {
@@ -61,8 +59,8 @@ fn every_command_has_a_manual_page_with_its_flags() {
 #[test]
 fn what_the_readmes_tell_to_type_is_understood() {
     let desk = Desk::new();
-    for readme in ["README.md", "../README.md"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(readme);
+    for readme in ["aep-cli/README.md", "README.md"] {
+        let Some(path) = repository(readme) else { continue };
         let text = std::fs::read_to_string(path).unwrap().replace("\\\n", " ");
         let lines: Vec<&str> = text.lines().filter(|line| line.starts_with("aep ")).collect();
         assert!(lines.len() > 5, "{readme}");
