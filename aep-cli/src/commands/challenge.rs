@@ -77,20 +77,17 @@ impl From<ChallengeError> for Failure {
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let folder = &args.output;
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::bad_input(format!("cannot make the folder: {error}"))
-            .in_file(folder)
-            .with_hint("give a folder that may be written to")
-    })?;
     let [data, mapping, truth] =
         ["recording.csv", "recording.toml", "truth.json"].map(|name| folder.join(name));
     if args.example {
+        output::make_folder(folder)?;
         for (name, content) in example::files() {
             output::save(&folder.join(name), content)?;
         }
     } else {
         let hide = Hide::parse(&args.hide.to_lowercase());
         let challenge = generate(&hide, args.seed, args.size.into())?;
+        output::make_folder(folder)?;
         output::save(&data, &aep_data::to_csv_rounded(&challenge.recording, DIGITS))?;
         output::save(&mapping, &aep_data::to_toml(&challenge.recording))?;
         output::save_json(&truth, &challenge.truth)?;

@@ -25,11 +25,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     // Hands the global flags and the names `aep-discover`, ... down to the commands.
     command.build();
     let Some(dir) = &args.dir else { return output::print(&page(command)?) };
-    std::fs::create_dir_all(dir).map_err(|error| {
-        Failure::bad_input(format!("cannot make the folder: {error}"))
-            .in_file(dir)
-            .with_hint("give a folder that may be written to")
-    })?;
+    output::make_folder(dir)?;
     let commands: Vec<clap::Command> = command.get_subcommands().cloned().collect();
     for command in std::iter::once(command).chain(commands) {
         let name = command.get_display_name().unwrap_or(command.get_name()).to_owned();
