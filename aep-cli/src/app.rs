@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 
 use crate::args;
 use crate::commands::Command;
@@ -20,7 +20,7 @@ use crate::output;
 struct Cli {
     #[command(flatten)]
     global: Global,
-    /// An effect of your own as a line of text in a TOML file (see examples/cogging.toml); it joins the
+    /// An effect of your own as a line of text in a TOML file (`aep effects --help` shows one); it joins the
     /// library. May be given several times
     #[arg(long, global = true, value_name = "FILE")]
     effects_file: Vec<PathBuf>,
@@ -46,6 +46,11 @@ pub struct Global {
     /// Print only errors; files are still written.
     #[arg(long, short, global = true, help_heading = "Running")]
     pub quiet: bool,
+}
+
+/// All arguments, for whatever is made of them: manual pages, completions.
+pub fn command() -> clap::Command {
+    Cli::command()
 }
 
 /// Runs the program.
@@ -79,7 +84,6 @@ fn run(cli: Cli) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_arguments_contradict_each_other_nowhere() {

@@ -50,6 +50,8 @@ commands! {
     Optimize(optimize),
     Problems(problems),
     Reproduce(reproduce),
+    Completions(completions),
+    Man(man),
 }
 
 /// A number above 0.

@@ -6,25 +6,29 @@ use aep_data::{Loaded, Mapping, parse};
 
 use crate::failure::Failure;
 
-const NAME: &str = "examples/hidden/recording.csv";
-const TRUTH: &str = "examples/hidden/truth.json";
-const RECORDING: &[u8] = include_bytes!("../../examples/hidden/recording.csv");
-const MAPPING: &str = include_str!("../../examples/hidden/recording.toml");
+const NAME: &str = "example/recording.csv";
+const RECORDING: &str = include_str!("../examples/hidden/recording.csv");
+const MAPPING: &str = include_str!("../examples/hidden/recording.toml");
+const TRUTH: &str = include_str!("../examples/hidden/truth.json");
 
-/// Reads it. The truth that lies beside it is not part of the program.
+/// Reads it. The truth that comes with it is not looked at.
 pub fn load() -> Result<Loaded, Failure> {
     let path = Path::new(NAME);
     let mapping = Mapping::parse(MAPPING, &path.with_extension("toml"))?;
-    Ok(parse(path, RECORDING.to_vec(), &mapping)?)
+    Ok(parse(path, RECORDING.into(), &mapping)?)
+}
+
+/// Its files, by name, as they are.
+pub fn files() -> [(&'static str, &'static str); 3] {
+    [("recording.csv", RECORDING), ("recording.toml", MAPPING), ("truth.json", TRUTH)]
 }
 
 /// What to do next.
 pub fn next() -> String {
-    format!(
-        "\nWas it right? The truth stands in {TRUTH}, which was not read:\n\
-         \x20 cat {TRUTH}\n\
+    "\nWas it right? The truth was not looked at; it is written beside the data as truth.json by\n\
+         \x20 aep challenge --example -o example\n\
          With plots:      aep discover --html report.html\n\
          Another riddle:  aep challenge --hide random --seed 7 -o riddle\n\
          Your own data:   aep discover run.csv       (columns time_s,force_N,position_m)\n"
-    )
+        .to_owned()
 }

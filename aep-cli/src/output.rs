@@ -59,6 +59,15 @@ fn format_lines(indent: &str, text: &str) -> String {
     text.lines().map(|line| format!("{indent}{line}\n")).collect::<Vec<String>>().concat()
 }
 
+/// Makes a folder to write to, if it is not there.
+pub fn make_folder(path: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(path).map_err(|error| {
+        Failure::bad_input(format!("cannot make the folder: {error}"))
+            .in_file(path)
+            .with_hint("give a folder that may be written to")
+    })
+}
+
 /// Writes a file, completely or not at all; `-` is standard output.
 pub fn save(path: &Path, text: &str) -> Result<(), Failure> {
     if path.as_os_str() == "-" {

@@ -42,6 +42,10 @@ pub trait Algorithm<T: Scalar = f64>: Send {
 
     /// The costs of the last [`Algorithm::ask`], in its order. A cost that is not finite counts as
     /// the worst.
+    ///
+    /// # Errors
+    /// When nothing was asked, or not as many costs are told as positions were asked. The run is as
+    /// before then.
     fn tell(&mut self, costs: &[T]) -> Result<(), TellError>;
 
     /// The best position so far; none before the first [`Algorithm::tell`].
@@ -56,9 +60,15 @@ pub trait Algorithm<T: Scalar = f64>: Send {
     }
 
     /// The whole state, for a checkpoint. Between `ask` and `tell` the state before the `ask`.
+    ///
+    /// # Errors
+    /// When the state cannot be encoded.
     fn save(&self) -> Result<Vec<u8>, CheckpointError>;
 
     /// Takes over a state saved by an optimizer built with the same configuration.
+    ///
+    /// # Errors
+    /// When `state` cannot be decoded or is of another size; the run is as before then.
     fn restore(&mut self, state: &[u8]) -> Result<(), CheckpointError>;
 }
 
@@ -89,6 +99,9 @@ impl<'a, T: Scalar> Start<'a, T> {
 
     /// The initial population in search coordinates: for a given domain, seed and size the same
     /// whatever the algorithm.
+    ///
+    /// # Errors
+    /// When an initial point is outside the domain or has not one entry per component.
     pub fn population(&self, count: usize) -> Result<Points<T>, ConfigError> {
         let mut points = Points::zeros(count, self.domain.dimension());
         let streams = crate::Streams::new(self.seed, crate::Purpose::Initial, 0);
@@ -123,5 +136,8 @@ pub trait Method<T: Scalar = f64>: Send + Sync {
     fn name(&self) -> String;
 
     /// A fresh run.
+    ///
+    /// # Errors
+    /// When a setting is outside its range or an initial point outside the domain.
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError>;
 }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 const MAGIC: &[u8; 8] = b"AEP-CKPT";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 20;
 
 /// Why a checkpoint could not be written or is refused.
@@ -91,16 +91,25 @@ fn differing(of: &str, other: &str) -> String {
 }
 
 /// Bytes of `state`, exact to the bit.
+///
+/// # Errors
+/// [`CheckpointError::Encoding`] when `state` serialises to something without a known length.
 pub fn encode<S: Serialize>(state: &S) -> Result<Vec<u8>, CheckpointError> {
     Ok(postcard::to_allocvec(state)?)
 }
 
 /// The state encoded in `bytes`.
+///
+/// # Errors
+/// [`CheckpointError::Encoding`] when `bytes` hold something else.
 pub fn decode<S: DeserializeOwned>(bytes: &[u8]) -> Result<S, CheckpointError> {
     Ok(postcard::from_bytes(bytes)?)
 }
 
 /// Writes `contents` to `path` so that the file is always whole: the old one or the new one.
+///
+/// # Errors
+/// When `contents` cannot be encoded or the file not be written.
 pub fn write<C: Serialize>(path: &Path, contents: &C) -> Result<(), CheckpointError> {
     let bytes = frame(&encode(contents)?);
     let mut beside = path.as_os_str().to_owned();
@@ -127,6 +136,9 @@ fn frame(payload: &[u8]) -> Vec<u8> {
 }
 
 /// Reads what [`write()`] wrote; everything else is refused.
+///
+/// # Errors
+/// When the file cannot be read, is no checkpoint, is one of another version, or is damaged.
 pub fn read<C: DeserializeOwned>(path: &Path) -> Result<C, CheckpointError> {
     let bytes =
         fs::read(path).map_err(|source| CheckpointError::File { path: path.into(), source })?;

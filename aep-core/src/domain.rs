@@ -64,6 +64,9 @@ impl<T: Scalar> Domain<T> {
     }
 
     /// The cube [`lower`, `upper`]^`dimension`.
+    ///
+    /// # Errors
+    /// As [`Domain::new`].
     pub fn cube(dimension: usize, lower: T, upper: T) -> Result<Self, ConfigError> {
         Self::new(vec![lower; dimension], vec![upper; dimension])
     }
@@ -87,6 +90,9 @@ impl<T: Scalar> Domain<T> {
     }
 
     /// Names the components, for reports and traces.
+    ///
+    /// # Errors
+    /// When there is not one name per component.
     pub fn with_names<S: Into<String>>(
         mut self,
         names: impl IntoIterator<Item = S>,
@@ -166,6 +172,27 @@ impl<T: Scalar> Domain<T> {
         }
     }
 
+    /// `x` (problem coordinates) moved by a `share` of the width of the domain along `component`, on its
+    /// scale, and no further than the limits.
+    pub fn shifted(&self, component: usize, x: T, share: T) -> T {
+        let (lower, upper) = (self.lower[component], self.upper[component]);
+        let shifted = match self.scales[component] {
+            Scale::Linear => x + share * (upper - lower),
+            Scale::Log => x * (upper / lower).powf(share),
+        };
+        num_traits::clamp(shifted, lower, upper)
+    }
+
+    /// Where `x` (problem coordinates) lies between the limits of `component`, on its scale: 0 at the
+    /// lower, 1 at the upper one.
+    pub fn share(&self, component: usize, x: T) -> T {
+        let (lower, upper) = (self.lower[component], self.upper[component]);
+        match self.scales[component] {
+            Scale::Linear => (x - lower) / (upper - lower),
+            Scale::Log => (x / lower).ln() / (upper / lower).ln(),
+        }
+    }
+
     /// A position drawn uniformly in search coordinates.
     pub fn sample(&self, rng: &mut random::Stream, u: &mut [T]) {
         let mut local = rng.clone();
@@ -212,6 +239,19 @@ mod tests {
         assert!(domain.contains(&x));
         domain.decode(domain.search_lower(), &mut x);
         assert!(domain.contains(&x));
+    }
+
+    #[test]
+    fn a_shift_moves_by_its_share_and_stops_at_the_limits() {
+        let domain = Domain::new(vec![-1.0, 1e-2], vec![3.0, 1e4]).unwrap();
+        let domain = domain.with_scales(vec![Scale::Linear, Scale::Log]).unwrap();
+        for (component, x) in [(0, 0.5_f64), (1, 7.0)] {
+            let from = domain.share(component, x);
+            let to = domain.share(component, domain.shifted(component, x, 0.25));
+            assert!((to - from - 0.25).abs() < 1e-12);
+            assert_eq!(domain.shifted(component, x, 2.0), domain.upper()[component]);
+            assert_eq!(domain.shifted(component, x, -2.0), domain.lower()[component]);
+        }
     }
 
     #[test]

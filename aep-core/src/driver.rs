@@ -10,7 +10,7 @@ use crate::checkpoint::{self, RunState};
 use crate::run::{Ledger, Run};
 use crate::{
     Algorithm, Budget, CheckpointError, ConfigError, Evaluator, Failures, Method, Observer,
-    Parallel, Problem, Scalar, Serial, Start, StopReason, TellError,
+    Problem, Scalar, Serial, Start, StopReason, TellError,
 };
 
 /// What a run found.
@@ -100,10 +100,11 @@ impl<'a, T: Scalar> Driver<'a, T> {
         self
     }
 
-    /// Evaluates on as many threads as there are cores.
+    /// Evaluates on as many threads as there are cores (feature `parallel`).
+    #[cfg(feature = "parallel")]
     #[must_use]
     pub fn in_parallel(self) -> Self {
-        self.with_evaluator(Parallel::new())
+        self.with_evaluator(crate::Parallel::new())
     }
 
     /// Adds an observer.
@@ -128,6 +129,10 @@ impl<'a, T: Scalar> Driver<'a, T> {
     }
 
     /// Runs `algorithm` on `problem` from where it stands.
+    ///
+    /// # Errors
+    /// When the two have different numbers of components. Failed evaluations are no error: they are counted
+    /// in [`Outcome::failures`], and what went wrong with a checkpoint is told in the outcome, too.
     pub fn run(
         &mut self,
         algorithm: &mut dyn Algorithm<T>,
@@ -140,7 +145,11 @@ impl<'a, T: Scalar> Driver<'a, T> {
     }
 
     /// Continues the run saved in `path`. `algorithm` must be built as for that run, and `problem`
-    /// must be the same as far as [`Problem::identity`] tells; the result equals that of the uninterrupted run to the bit. Budgets count from the run's beginning.
+    /// must be the same as far as [`Problem::identity`] tells; the result equals that of the
+    /// uninterrupted run to the bit. Budgets count from the run's beginning.
+    ///
+    /// # Errors
+    /// When the checkpoint cannot be read, is damaged, or is of another run or another problem.
     pub fn resume(
         &mut self,
         algorithm: &mut dyn Algorithm<T>,
@@ -252,6 +261,9 @@ impl<T: Scalar> Driver<'_, T> {
 /// assert!((outcome.cost - 3.0).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// # Errors
+/// When a setting of `method` is outside its range.
 pub fn minimize<T: Scalar>(
     problem: &dyn Problem<T>,
     method: &dyn Method<T>,

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::algorithm::{Algorithm, Best};
+use crate::best::BestSoFar;
 use crate::random::{Purpose, Streams};
+use crate::turn::Turn;
 use crate::{
     Batch, CheckpointError, Child, ConfigError, Domain, Individual, Mutation, Points, Population,
     Scalar, Selection, Start, TellError,
@@ -63,7 +65,7 @@ pub struct Engine<T: Scalar, M: Mutation<T>, S> {
     children: Population<T, M::Individual>,
     /// The positions asked, in problem coordinates; unused when those are the search coordinates.
     decoded: Option<Points<T>>,
-    asked: bool,
+    turn: Turn,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -73,8 +75,7 @@ struct State<T: Scalar, I> {
     started: bool,
     generation: u64,
     parents: Population<T, I>,
-    best_position: Vec<T>,
-    best_cost: T,
+    best: BestSoFar<T>,
 }
 
 impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Engine<T, M, S> {
@@ -114,12 +115,11 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Engine<T, M, S> 
                 started: false,
                 generation: 0,
                 parents,
-                best_position: vec![T::zero(); domain.dimension()],
-                best_cost: T::infinity(),
+                best: BestSoFar::new(domain.dimension()),
             },
             domain,
             decoded,
-            asked: false,
+            turn: Turn::default(),
         })
     }
 
@@ -163,11 +163,7 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Engine<T, M, S> 
     fn note_best(&mut self) {
         let state = &mut self.state;
         let told = if state.started { &self.children } else { &state.parents };
-        let i = told.best();
-        if told.costs[i] < state.best_cost {
-            state.best_cost = told.costs[i];
-            self.domain.decode(told.positions.row(i), &mut state.best_position);
-        }
+        state.best.note(&told.costs, |i, x| self.domain.decode(told.positions.row(i), x));
     }
 
     fn select(&mut self) {
@@ -209,12 +205,11 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Algorithm<T> for
     }
 
     fn ask(&mut self) -> Batch<'_, T> {
-        if !self.asked {
+        if self.turn.ask() {
             if self.state.started {
                 self.make_children();
             }
             self.decode_points();
-            self.asked = true;
         }
         match &self.decoded {
             Some(decoded) => decoded.batch(),
@@ -223,14 +218,7 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Algorithm<T> for
     }
 
     fn tell(&mut self, costs: &[T]) -> Result<(), TellError> {
-        if !self.asked {
-            return Err(TellError::NotAsked);
-        }
-        let expected = self.state.parents.len();
-        if costs.len() != expected {
-            return Err(TellError::Count { found: costs.len(), expected });
-        }
-        self.asked = false;
+        self.turn.tell(costs.len(), self.state.parents.len())?;
         if self.state.started {
             take_costs(costs, &mut self.children.costs);
             self.note_best();
@@ -244,9 +232,7 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Algorithm<T> for
     }
 
     fn best(&self) -> Option<Best<'_, T>> {
-        let state = &self.state;
-        let found = state.best_cost.is_finite();
-        found.then(|| Best { position: &state.best_position, cost: state.best_cost })
+        self.state.best.get()
     }
 
     fn generation(&self) -> u64 {
@@ -266,7 +252,7 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Algorithm<T> for
             return Err(CheckpointError::Mismatch { what: "population size or dimension" });
         }
         self.state = state;
-        self.asked = false;
+        self.turn = Turn::default();
         Ok(())
     }
 }

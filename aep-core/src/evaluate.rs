@@ -5,7 +5,6 @@ use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe, catch_unwind};
 use std::sync::Once;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::{Batch, Problem, Scalar};
@@ -61,59 +60,6 @@ impl<T: Scalar> Evaluator<T> for Serial {
     }
 }
 
-/// In pieces of [`Problem::batch_size`] on a pool of threads.
-#[derive(Debug)]
-pub struct Parallel {
-    pool: Option<rayon::ThreadPool>,
-}
-
-impl Parallel {
-    /// On rayon's global pool: as many threads as there are cores.
-    pub fn new() -> Self {
-        Self { pool: None }
-    }
-
-    /// On a pool of its own with `threads` threads; 0 takes as many as there are cores.
-    pub fn with_threads(threads: usize) -> Result<Self, rayon::ThreadPoolBuildError> {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        Ok(Self { pool: Some(pool) })
-    }
-}
-
-impl Default for Parallel {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl<T: Scalar> Evaluator<T> for Parallel {
-    fn evaluate(
-        &self,
-        problem: &dyn Problem<T>,
-        points: Batch<'_, T>,
-        costs: &mut [T],
-    ) -> Failures {
-        let size = problem.batch_size().max(1);
-        let mut work = || {
-            let pieces = costs.par_chunks_mut(size).enumerate();
-            let failures: Vec<Failures> = pieces
-                .map(|(piece, costs)| {
-                    let from = piece * size;
-                    evaluate_caught(problem, points.slice(from, from + costs.len()), costs)
-                })
-                .collect();
-            failures.into_iter().fold(Failures::default(), |mut sum, part| {
-                sum.add(part);
-                sum
-            })
-        };
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
-    }
-}
-
 thread_local! {
     /// Whether this thread is inside an evaluation whose panic is caught.
     static CATCHING: Cell<bool> = const { Cell::new(false) };
@@ -142,7 +88,7 @@ fn catch<R>(evaluation: impl FnOnce() -> R) -> std::thread::Result<R> {
 
 /// Evaluates as one batch. If that panics, the positions without a cost are evaluated one by one,
 /// so that a single bad position does not cost its neighbours.
-fn evaluate_caught<T: Scalar>(
+pub(crate) fn evaluate_caught<T: Scalar>(
     problem: &dyn Problem<T>,
     points: Batch<'_, T>,
     costs: &mut [T],
@@ -197,8 +143,13 @@ mod tests {
     #[test]
     fn every_failure_is_worst_and_counted_once() {
         let infinite = f64::INFINITY;
-        for evaluator in [&Serial as &dyn Evaluator, &Parallel::new()] {
-            let (costs, failures) = evaluate(evaluator);
+        let evaluators: &[&dyn Evaluator] = &[
+            &Serial,
+            #[cfg(feature = "parallel")]
+            &crate::Parallel::new(),
+        ];
+        for evaluator in evaluators {
+            let (costs, failures) = evaluate(*evaluator);
             assert_eq!(costs, [infinite, infinite, infinite, 3.0, 4.0]);
             assert_eq!((failures.non_finite, failures.panics), (2, 1));
             assert_eq!(failures.first_message.as_deref(), Some("two is out of stock"));

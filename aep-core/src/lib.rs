@@ -22,7 +22,9 @@
 //! **The task.** A [`Problem`] has a [`Domain`] and a cost to be minimised; a closure becomes one by
 //! [`FnProblem`], one that can fail by [`FallibleProblem`]. A component of the domain can be
 //! logarithmic, so that the search covers its decades evenly. A simulator that takes many positions
-//! at once overrides [`Problem::evaluate_batch`].
+//! at once overrides [`Problem::evaluate_batch`]. Constraints are put around a problem by
+//! [`Constrained`]. A cost that is a sum of squares is a [`LeastSquares`] task: searched like any other,
+//! then taken to the bottom of its valley by [`polish`].
 //!
 //! **The method.** What to run is a [`Method`]; [`methods`] has all by name.
 //!
@@ -52,8 +54,10 @@
 //!
 //! let start = Start::new(slow.domain(), 1);
 //! let budget = Budget::evaluations(8_000).with_stagnation(50, 1e-12);
-//! let mut driver = Driver::new(budget)
-//!     .in_parallel()
+//! let driver = Driver::new(budget);
+//! # #[cfg(feature = "parallel")]
+//! let driver = driver.in_parallel();
+//! let mut driver = driver
 //!     .with_stop_flag(&ctrl_c)
 //!     .with_checkpoint(&checkpoint, 10)
 //!     .with_observer(|p: &Progress| println!("{} {}", p.generation, p.best_cost()));
@@ -78,6 +82,11 @@
 //! [`Mutation`] (how a child is made) and a [`Selection`] (who survives). The examples
 //! `own_mutation` and `own_selection` have about 30 lines each.
 //!
+//! # Features
+//!
+//! `parallel` (default): evaluations and trials on many threads, by rayon. Without it there is no
+//! [`Parallel`], trials run one after the other, and all results are the same to the bit.
+//!
 //! # What holds always
 //!
 //! - **The same seed gives the same bits** on one thread, on many, and across a resumption: every
@@ -90,20 +99,25 @@
 
 mod aep;
 mod algorithm;
+mod best;
 mod border;
 mod budget;
 pub mod checkpoint;
 mod cma_es;
+mod constrained;
 mod de;
 mod domain;
 mod driver;
 mod engine;
 mod error;
 mod evaluate;
+mod least_squares;
 mod meta_ep;
 pub mod methods;
 mod mutation;
 mod observe;
+#[cfg(feature = "parallel")]
+mod parallel;
 mod points;
 mod population;
 mod problem;
@@ -114,6 +128,7 @@ mod scalar;
 mod selection;
 mod trace;
 pub mod trials;
+mod turn;
 mod wide;
 
 pub use aep::{
@@ -124,17 +139,23 @@ pub use border::Border;
 pub use budget::{Budget, Stagnation, StopReason};
 pub use checkpoint::CheckpointError;
 pub use cma_es::{CmaEs, Restarts};
+pub use constrained::Constrained;
 pub use de::{Control, De, Factors};
 pub use domain::{Domain, Scale};
 pub use driver::{Driver, Outcome, RunError, minimize};
 pub use engine::Engine;
 pub use error::{ConfigError, TellError};
-pub use evaluate::{Evaluator, Failures, Parallel, Serial, silence_caught_panics};
+pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
+pub use least_squares::{
+    FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, polish,
+};
 pub use meta_ep::{
     CommonRate, LearningRate, MetaEp, MetaEpMutation, SigmaUnit, StepSizes, UpdateOrder,
 };
 pub use mutation::{Child, Mutation};
 pub use observe::{Observer, Progress};
+#[cfg(feature = "parallel")]
+pub use parallel::Parallel;
 pub use points::{Batch, Points};
 pub use population::{Individual, Population};
 pub use problem::{Errors, FallibleProblem, FnProblem, Problem};
@@ -143,3 +164,8 @@ pub use restart::Restarting;
 pub use scalar::Scalar;
 pub use selection::{OneToOne, Selection, Ties, Tournament};
 pub use trace::{Trace, TraceFormat};
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use aep_core::{
     Aep, Algorithm, Budget, CheckpointError, CmaEs, De, Domain, Driver, Failures, FallibleProblem,
-    FnProblem, MetaEp, Method, Outcome, Parallel, Problem, Progress, RunError, Scale, Start,
-    StopReason, minimize,
+    FnProblem, MetaEp, Method, Outcome, Problem, Progress, RunError, Scale, Start, StopReason,
+    minimize,
 };
 
 fn rosenbrock() -> impl Problem {
@@ -51,6 +51,7 @@ fn without_time(mut outcome: Outcome) -> Outcome {
     outcome
 }
 
+#[cfg(feature = "parallel")]
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let problem = rosenbrock();
@@ -58,7 +59,7 @@ fn any_number_of_threads_gives_the_same_bits() {
         let run = |threads| {
             let mut driver = Driver::new(Budget::generations(150));
             if threads > 0 {
-                driver = driver.with_evaluator(Parallel::with_threads(threads).unwrap());
+                driver = driver.with_evaluator(aep_core::Parallel::with_threads(threads).unwrap());
             }
             without_time(driver.run(&mut *start(&*method, &problem), &problem).unwrap())
         };
@@ -90,6 +91,32 @@ fn a_resumed_run_equals_the_uninterrupted_one() {
             .resume(&mut *start(&*method, &problem), &problem, &path)
             .unwrap();
         assert_eq!(without_time(resumed), without_time(whole), "{}", method.name());
+    }
+}
+
+#[test]
+fn a_run_resumed_after_a_restart_equals_the_uninterrupted_one() {
+    let domain = Domain::cube(3, -5.12, 5.12).unwrap();
+    let dents = FnProblem::new(domain, |x: &[f64]| {
+        x.iter().map(|x| 10.0 + x * x - 10.0 * (std::f64::consts::TAU * x).cos()).sum()
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.ckpt");
+    for name in ["cma-es", "aep-practical-restarts"] {
+        let method = (aep_core::methods::find(name).unwrap().build)(8);
+        let whole = Driver::new(Budget::generations(900))
+            .run(&mut *start(&*method, &dents), &dents)
+            .unwrap();
+        let mut half = start(&*method, &dents);
+        Driver::new(Budget::generations(600))
+            .with_checkpoint(&path, 600)
+            .run(&mut *half, &dents)
+            .unwrap();
+        assert!(half.ask().len() > 8, "{name} has not restarted");
+        let resumed = Driver::new(Budget::generations(900))
+            .resume(&mut *start(&*method, &dents), &dents, &path)
+            .unwrap();
+        assert_eq!(without_time(resumed), without_time(whole), "{name}");
     }
 }
 

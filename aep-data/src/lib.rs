@@ -122,3 +122,8 @@ fn data_files(folder: &Path) -> Vec<String> {
     files.sort();
     files
 }
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

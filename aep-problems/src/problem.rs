@@ -50,6 +50,9 @@ impl Definition {
     }
 
     /// The problem with `n` components.
+    ///
+    /// # Errors
+    /// When the function is not defined for `n` components.
     pub fn in_dimension(&'static self, n: usize) -> Result<TestProblem, ProblemError> {
         if self.dimension.admits(n) {
             return Ok(self.build(n));
@@ -88,6 +91,9 @@ impl TestProblem {
     }
 
     /// Moves the optimum by `shift`.
+    ///
+    /// # Errors
+    /// When `shift` has not one entry per component.
     pub fn with_shift(mut self, shift: Vec<f64>) -> Result<Self, ProblemError> {
         let expected = self.domain.dimension();
         if shift.len() != expected {

@@ -11,3 +11,8 @@ pub mod words;
 
 pub use html::escape;
 pub use report::Source;
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

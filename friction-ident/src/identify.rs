@@ -26,8 +26,8 @@ mod intervals;
 mod refine;
 mod windowed;
 
+pub use aep_core::Refined;
 pub use intervals::{Interval, intervals, intervals_over};
-pub use refine::Refined;
 
 use free_run::FreeRun;
 use windowed::Windowed;

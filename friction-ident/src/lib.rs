@@ -43,3 +43,8 @@ pub use model::{Model, ModelError};
 pub use reference::{Profile, Reference};
 pub use simulator::{Input, Plants, SimulationError, Start, Trajectory, simulate};
 pub use windows::{WindowErrors, WindowOptions, window_errors};
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -45,3 +45,8 @@ pub use discover::{DiscoverError, Event, Observer, Settings, discover, suggest};
 pub use family::{Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term};
 pub use recording::{Channel, Hold, Recording, RecordingError};
 pub use report::Discovery;
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use friction_ident::challenge::{ChallengeError, Hide, Level, generate};
 
 use crate::app::Global;
+use crate::example;
 use crate::failure::Failure;
 use crate::output::{self, written};
 
@@ -16,6 +17,9 @@ use crate::output::{self, written};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
+    /// The example that `aep discover` runs on without data, with its truth
+    #[arg(long, conflicts_with_all = ["hide", "size", "seed"])]
+    example: bool,
     /// The effect to hide, `random` or `nothing`
     #[arg(long, value_name = "EFFECT", default_value = "random")]
     hide: String,
@@ -34,7 +38,8 @@ const EXAMPLES: &str = "\
 Examples:
   aep challenge --hide random --seed 7 -o challenge && aep discover challenge/recording.csv
   aep challenge --hide stribeck --size faint --seed 3 -o faint
-  aep challenge --hide nothing --seed 4 -o control";
+  aep challenge --hide nothing --seed 4 -o control
+  aep challenge --example -o example";
 
 /// Digits of a recorded number: far below noise and counts.
 const DIGITS: usize = 8;
@@ -71,19 +76,22 @@ impl From<ChallengeError> for Failure {
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let hide = Hide::parse(&args.hide.to_lowercase());
-    let challenge = generate(&hide, args.seed, args.size.into())?;
     let folder = &args.output;
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::bad_input(format!("cannot make the folder: {error}"))
-            .in_file(folder)
-            .with_hint("give a folder that may be written to")
-    })?;
     let [data, mapping, truth] =
         ["recording.csv", "recording.toml", "truth.json"].map(|name| folder.join(name));
-    output::save(&data, &aep_data::to_csv_rounded(&challenge.recording, DIGITS))?;
-    output::save(&mapping, &aep_data::to_toml(&challenge.recording))?;
-    output::save_json(&truth, &challenge.truth)?;
+    if args.example {
+        output::make_folder(folder)?;
+        for (name, content) in example::files() {
+            output::save(&folder.join(name), content)?;
+        }
+    } else {
+        let hide = Hide::parse(&args.hide.to_lowercase());
+        let challenge = generate(&hide, args.seed, args.size.into())?;
+        output::make_folder(folder)?;
+        output::save(&data, &aep_data::to_csv_rounded(&challenge.recording, DIGITS))?;
+        output::save(&mapping, &aep_data::to_toml(&challenge.recording))?;
+        output::save_json(&truth, &challenge.truth)?;
+    }
     if global.quiet {
         return Ok(());
     }

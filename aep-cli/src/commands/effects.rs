@@ -12,7 +12,7 @@ use crate::output::{self, Align, Table, bold, dim, heading};
 
 /// List the effects a model can have, with equations and parameters
 #[derive(clap::Args)]
-#[command(after_help = "Examples:\n  aep effects             all of them, one line each\n  aep effects stribeck    everything about one\n  aep effects --effects-file examples/cogging.toml    with one of your own")]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Say everything about this one
     #[arg(value_name = "EFFECT")]
@@ -21,6 +21,19 @@ pub struct Args {
     #[arg(long)]
     rotary: bool,
 }
+
+const EXAMPLES: &str = concat!(
+    "\
+Examples:
+  aep effects                                all of them, one line each
+  aep effects stribeck                       everything about one
+  aep effects --effects-file cogging.toml    with one of your own
+
+A file with an effect of your own, cogging.toml:
+
+",
+    include_str!("../../examples/cogging.toml")
+);
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {

@@ -110,11 +110,7 @@ fn c(args: &Args, folder: &Path) -> Result<String, Failure> {
     let trial = control::run(&model, &reference, &servo, Some(&compensator))?;
     let samples = samples(&trial.run, &reference);
     let files = to_c(&compensator, model.axis(), &args.name, &samples)?;
-    std::fs::create_dir_all(folder).map_err(|error| {
-        Failure::bad_input(format!("cannot make the folder: {error}"))
-            .in_file(folder)
-            .with_hint("give a folder that may be written to")
-    })?;
+    output::make_folder(folder)?;
     let mut said = String::new();
     for left in compensator.left_out() {
         // Writing to a string cannot fail.

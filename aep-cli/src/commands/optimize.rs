@@ -249,9 +249,7 @@ fn write(
     comparison: &Comparison,
     results: &[Trials],
 ) -> Result<Vec<PathBuf>, Failure> {
-    std::fs::create_dir_all(directory).map_err(|error| {
-        Failure::bad_input(format!("cannot make the folder: {error}")).in_file(directory)
-    })?;
+    output::make_folder(directory)?;
     let mut files = Vec::new();
     keep(&mut files, &directory.join("curves.csv"), &curves_csv(results))?;
     keep(&mut files, &directory.join("curves.svg"), &svg(problem, results)?)?;

@@ -82,9 +82,7 @@ const FIGURES: &[&[Figure]] =
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let chosen = chosen(&args.figures)?;
-    std::fs::create_dir_all(&args.output).map_err(|error| {
-        Failure::bad_input(format!("cannot make the folder: {error}")).in_file(&args.output)
-    })?;
+    output::make_folder(&args.output)?;
     let conditions = Arc::new(Conditions {
         directory: args.output.clone(),
         trials: args.trials as usize,

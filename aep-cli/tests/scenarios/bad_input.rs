@@ -1,6 +1,6 @@
 //! Everything that can be wrong with what a user gives: exit code 2, what, where, how to mend it.
 
-use crate::harness::Desk;
+use crate::harness::{Desk, repository};
 
 /// 30 samples of a motion with one line replaced; line 1 is the header.
 fn recording(line: usize, text: &str) -> String {
@@ -84,7 +84,7 @@ fn an_unknown_effect_is_named_with_the_nearest_and_all() {
 #[test]
 fn a_mat_file_without_the_variables_lists_those_it_has() {
     let desk = Desk::new();
-    let fixture = concat!(env!("CARGO_MANIFEST_DIR"), "/../aep-data/tests/fixtures/mixed.mat");
+    let Some(fixture) = repository("aep-data/tests/fixtures/mixed.mat") else { return };
     desk.write("run.mat", std::fs::read(fixture).unwrap());
     desk.aep("discover run.mat").refused(&[
         "error: no variable for the force; the file has: t (1x40), u (40x1), x (1x40)",

@@ -12,8 +12,16 @@ fn without_data_the_example_is_solved_and_the_truth_pointed_at() {
         assert!(run.done().contains(part), "{part}");
     }
     let (json, page) = (desk.json("out.json"), desk.read("out.html"));
-    let truth = include_str!("../../../examples/hidden/truth.json");
+    let truth = include_str!("../../examples/hidden/truth.json");
     let truth: serde_json::Value = serde_json::from_str(truth).unwrap();
+    let next =
+        run.out.lines().map(str::trim).find(|line| line.starts_with("aep challenge --example"));
+    desk.aep(next.unwrap().strip_prefix("aep ").unwrap()).done();
+    assert_eq!(desk.json("example/truth.json"), truth);
+    assert_eq!(
+        desk.read("example/recording.csv").lines().next(),
+        Some("time_s,force_N,position_m,reference_m")
+    );
     assert_eq!(json["verdict"], "effects_found");
     assert_eq!(json["added"][0], truth["hidden"]);
     let error = |rung: usize| json["ladder"][rung]["error"]["force_rms_N"]["validation"].as_f64();

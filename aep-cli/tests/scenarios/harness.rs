@@ -99,7 +99,16 @@ impl Desk {
 
 /// A file of the measured data that may lie beside the project; says so where it does not.
 pub fn shared(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(name);
+    there(&Path::new("../../shared/data").join(name))
+}
+
+/// A file of the repository that the package does not have; says so where it is not there.
+pub fn repository(name: &str) -> Option<PathBuf> {
+    there(&Path::new("..").join(name))
+}
+
+fn there(path: &Path) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     if path.exists() {
         return path.canonicalize().ok();
     }

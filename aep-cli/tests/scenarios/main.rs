@@ -7,5 +7,6 @@ mod files;
 mod harness;
 mod help;
 mod loop_by_hand;
+mod manual;
 mod optimizers;
 mod plant;

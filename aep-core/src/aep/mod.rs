@@ -171,6 +171,9 @@ impl Aep {
     }
 
     /// A fresh run, as the engine itself: gives access to the population.
+    ///
+    /// # Errors
+    /// When a setting is outside its range or an initial point outside the domain.
     pub fn engine<T: Scalar>(
         &self,
         start: &Start<'_, T>,

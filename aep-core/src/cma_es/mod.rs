@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use distribution::Distribution;
 
+use crate::best::BestSoFar;
 use crate::random::{self, Purpose, Streams};
+use crate::restart::{Attempt, Runs};
+use crate::turn::Turn;
 use crate::{
     Algorithm, Batch, Best, Border, CheckpointError, ConfigError, Domain, Method, Points, Scalar,
     Start, TellError, checkpoint,
@@ -90,43 +93,43 @@ impl<T: Scalar> Method<T> for CmaEs {
         let valid = self.sigma > 0.0 && self.sigma.is_finite();
         let hint = "must be positive and finite";
         ConfigError::require(valid, "cma-es", "sigma", self.sigma, hint)?;
-        let first = start.population(lambda)?;
-        let signature = crate::engine::signature("cma-es", start.domain, start.seed, lambda);
-        Ok(Box::new(Run {
-            config: self.clone(),
-            signature: format!("{signature}, {self:?}"),
-            domain: start.domain.clone(),
-            seed: start.seed,
-            points: Points::zeros(lambda, n),
-            genotypes: Vec::new(),
-            asked: false,
-            first,
-            state: State {
-                generation: 0,
-                distribution: None,
-                lambda,
-                best_position: vec![T::zero(); n],
-                best_cost: T::infinity(),
-                restarting: false,
-                exhausted: None,
-            },
-        }))
+        let (config, domain, seed) = (self.clone(), start.domain.clone(), start.seed);
+        match self.restarts {
+            Restarts::Never => Ok(Box::new(Run::first(&config, start, lambda)?)),
+            Restarts::DoublePopulation => {
+                let initial = start.initial.to_vec();
+                let begin = move |attempt: Attempt| -> Result<Box<dyn Algorithm<T>>, ConfigError> {
+                    let start = Start::new(&domain, seed).with_initial(&initial);
+                    Ok(Box::new(match attempt.run {
+                        0 => Run::first(&config, &start, lambda)?,
+                        run => {
+                            let doubled = lambda.saturating_mul(1 << run.min(40));
+                            Run::again(&config, &start, doubled, attempt.generation)
+                        }
+                    }))
+                };
+                Ok(Box::new(Runs::new("cma-es".into(), "", None, Box::new(begin))?))
+            }
+        }
     }
 }
 
+/// One distribution until it has converged.
 #[derive(Debug)]
 struct Run<T: Scalar> {
-    config: CmaEs,
     signature: String,
     domain: Domain<T>,
     seed: u64,
-    /// The initial population, in search coordinates.
+    sigma: f64,
+    /// Candidates of a generation.
+    lambda: usize,
+    /// The initial population, in search coordinates; empty for a run that begins with a distribution.
     first: Points<T>,
     /// What was asked, in problem coordinates.
     points: Points<T>,
     /// What was drawn, scaled to the domain's width, before mirroring.
     genotypes: Vec<Vec<f64>>,
-    asked: bool,
+    turn: Turn,
     state: State<T>,
 }
 
@@ -136,31 +139,56 @@ struct State<T: Scalar> {
     generation: u64,
     /// None until the initial population has been evaluated.
     distribution: Option<Distribution>,
-    lambda: usize,
-    best_position: Vec<T>,
-    best_cost: T,
-    /// Whether the next generation begins a new distribution.
-    restarting: bool,
+    best: BestSoFar<T>,
     exhausted: Option<String>,
 }
 
 impl<T: Scalar> Run<T> {
-    fn sample(&mut self) {
-        let n = self.domain.dimension();
-        let generation = self.state.generation + 1;
-        if self.state.restarting {
-            let streams = Streams::new(self.seed, Purpose::Individual, generation);
-            let mut rng = streams.stream(0);
-            let mean = (0..n).map(|_| random::uniform::<f64>(&mut rng)).collect();
-            let fresh = Distribution::new(mean, self.config.sigma, self.state.lambda);
-            self.state.distribution = Some(fresh);
-            self.state.restarting = false;
+    /// A run that evaluates the initial population of `start` first.
+    fn first(config: &CmaEs, start: &Start<'_, T>, lambda: usize) -> Result<Self, ConfigError> {
+        let first = start.population(lambda)?;
+        Ok(Self { first, ..Self::new(config, start, lambda) })
+    }
+
+    /// A run from a random mean that goes on counting after `generation`, so that no random number
+    /// of the run before is drawn again.
+    fn again(config: &CmaEs, start: &Start<'_, T>, lambda: usize, generation: u64) -> Self {
+        let mut run = Self::new(config, start, lambda);
+        let mut rng = Streams::new(start.seed, Purpose::Individual, generation + 1).stream(0);
+        let dimension = start.domain.dimension();
+        let mean = (0..dimension).map(|_| random::uniform::<f64>(&mut rng)).collect();
+        run.state.distribution = Some(Distribution::new(mean, config.sigma, lambda));
+        run.state.generation = generation;
+        run
+    }
+
+    fn new(config: &CmaEs, start: &Start<'_, T>, lambda: usize) -> Self {
+        let signature = crate::engine::signature("cma-es", start.domain, start.seed, lambda);
+        let dimension = start.domain.dimension();
+        Self {
+            signature: format!("{signature}, {config:?}"),
+            domain: start.domain.clone(),
+            seed: start.seed,
+            sigma: config.sigma,
+            lambda,
+            first: Points::zeros(0, dimension),
+            points: Points::zeros(lambda, dimension),
+            genotypes: Vec::new(),
+            turn: Turn::default(),
+            state: State {
+                generation: 0,
+                distribution: None,
+                best: BestSoFar::new(dimension),
+                exhausted: None,
+            },
         }
+    }
+
+    fn sample(&mut self) {
         let Some(distribution) = &self.state.distribution else { return };
-        let streams = Streams::new(self.seed, Purpose::Mutation, generation);
+        let streams = Streams::new(self.seed, Purpose::Mutation, self.state.generation + 1);
         self.genotypes =
-            (0..self.state.lambda).map(|i| distribution.sample(&mut streams.stream(i))).collect();
-        self.points = Points::zeros(self.state.lambda, n);
+            (0..self.lambda).map(|i| distribution.sample(&mut streams.stream(i))).collect();
         for (i, genotype) in self.genotypes.iter().enumerate() {
             let search = phenotype(&self.domain, genotype);
             self.domain.decode(&search, self.points.row_mut(i));
@@ -172,17 +200,8 @@ impl<T: Scalar> Run<T> {
         let best = (0..costs.len()).reduce(|a, b| if costs[b] < costs[a] { b } else { a });
         let row = self.first.row(best.unwrap_or(0));
         let mean = genotype(&self.domain, row);
-        let fresh = Distribution::new(mean, self.config.sigma, self.state.lambda);
+        let fresh = Distribution::new(mean, self.sigma, self.lambda);
         self.state.distribution = Some(fresh);
-    }
-
-    fn note_best(&mut self, costs: &[T]) {
-        for (i, cost) in costs.iter().enumerate() {
-            if *cost < self.state.best_cost && cost.is_finite() {
-                self.state.best_cost = *cost;
-                self.state.best_position.copy_from_slice(self.points.row(i));
-            }
-        }
     }
 
     fn adapt(&mut self, costs: &[T]) {
@@ -191,14 +210,7 @@ impl<T: Scalar> Run<T> {
         let costs: Vec<f64> =
             costs.iter().map(|c| if c.is_finite() { c.as_f64() } else { worst }).collect();
         distribution.update(&self.genotypes, &costs);
-        let Some(why) = distribution.converged() else { return };
-        match self.config.restarts {
-            Restarts::Never => self.state.exhausted = Some(why.into()),
-            Restarts::DoublePopulation => {
-                self.state.lambda *= 2;
-                self.state.restarting = true;
-            }
-        }
+        self.state.exhausted = distribution.converged().map(Into::into);
     }
 }
 
@@ -232,7 +244,7 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
     }
 
     fn ask(&mut self) -> Batch<'_, T> {
-        if !self.asked {
+        if self.turn.ask() {
             if self.state.distribution.is_some() {
                 self.sample();
             } else {
@@ -240,20 +252,14 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
                     self.domain.decode(self.first.row(i), self.points.row_mut(i));
                 }
             }
-            self.asked = true;
         }
         self.points.batch()
     }
 
     fn tell(&mut self, costs: &[T]) -> Result<(), TellError> {
-        if !self.asked {
-            return Err(TellError::NotAsked);
-        }
-        if costs.len() != self.points.len() {
-            return Err(TellError::Count { found: costs.len(), expected: self.points.len() });
-        }
-        self.asked = false;
-        self.note_best(costs);
+        self.turn.tell(costs.len(), self.lambda)?;
+        let points = &self.points;
+        self.state.best.note(costs, |i, x| x.copy_from_slice(points.row(i)));
         if self.state.distribution.is_some() {
             self.adapt(costs);
             self.state.generation += 1;
@@ -264,9 +270,7 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
     }
 
     fn best(&self) -> Option<Best<'_, T>> {
-        let state = &self.state;
-        let found = state.best_cost.is_finite();
-        found.then(|| Best { position: &state.best_position, cost: state.best_cost })
+        self.state.best.get()
     }
 
     fn generation(&self) -> u64 {
@@ -283,11 +287,11 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), CheckpointError> {
         let state: State<T> = checkpoint::decode(bytes)?;
-        if state.best_position.len() != self.domain.dimension() {
+        if state.best.dimension() != self.domain.dimension() {
             return Err(CheckpointError::Mismatch { what: "dimension" });
         }
         self.state = state;
-        self.asked = false;
+        self.turn = Turn::default();
         Ok(())
     }
 }

@@ -27,6 +27,7 @@ mod summary;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+#[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -67,8 +68,12 @@ impl Plan {
         Streams::new(self.seed, Purpose::Trial, 0).word(trial)
     }
 
-    /// All trials of `method`, spread over rayon's threads. `problem` makes the problem of a trial:
+    /// All trials of `method`, spread over rayon's threads (feature `parallel`; the results
+    /// are the same without it). `problem` makes the problem of a trial:
     /// `|_| &problem` for one and the same.
+    ///
+    /// # Errors
+    /// When a setting of `method` is outside its range.
     pub fn run<T: Scalar, P: Problem<T>>(
         &self,
         method: &dyn Method<T>,
@@ -79,6 +84,9 @@ impl Plan {
 
     /// The same until `stop` is set, for example by Ctrl-C: what is returned are the trials that had
     /// ended by then. `ended` is called after each of them, from any thread.
+    ///
+    /// # Errors
+    /// As [`Plan::run`].
     pub fn run_watched<T: Scalar, P: Problem<T>>(
         &self,
         method: &dyn Method<T>,
@@ -97,8 +105,11 @@ impl Plan {
             }
             Ok(whole.then_some(run))
         };
-        let trials: Result<Vec<Option<Trial>>, RunError> =
-            (0..self.trials).into_par_iter().map(one).collect();
+        #[cfg(feature = "parallel")]
+        let numbers = (0..self.trials).into_par_iter();
+        #[cfg(not(feature = "parallel"))]
+        let numbers = 0..self.trials;
+        let trials: Result<Vec<Option<Trial>>, RunError> = numbers.map(one).collect();
         Ok(Trials { method: method.name(), trials: trials?.into_iter().flatten().collect() })
     }
 

@@ -90,6 +90,9 @@ pub struct Measured {
 
 impl Figure {
     /// Runs all lines, `trials` times each.
+    ///
+    /// # Errors
+    /// When a method refuses its settings: never for those of the paper.
     pub fn measure(&self, trials: usize, seed: u64) -> Result<Measured, RunError> {
         let run = |line: &Line| self.run(&*line.method.method(), trials, seed);
         let lines: Vec<Trials> = self.lines.iter().map(run).collect::<Result<_, _>>()?;
@@ -112,6 +115,9 @@ impl Figure {
     }
 
     /// Runs one method under the figure's conditions.
+    ///
+    /// # Errors
+    /// When a setting of `method` is outside its range.
     pub fn run(&self, method: &dyn Method, trials: usize, seed: u64) -> Result<Trials, RunError> {
         let problem = self.function.usual();
         let plan = Plan::new(trials, Budget::generations(self.generations)).with_seed(seed);

@@ -24,6 +24,9 @@ pub struct Reading {
 impl Figure {
     /// Every reading on every line, `trials` times each. Borders that let individuals leave the
     /// domain are left out where the function has no minimum outside it (f3).
+    ///
+    /// # Errors
+    /// As [`Figure::measure`].
     pub fn readings(&self, trials: usize, seed: u64) -> Result<Vec<Reading>, RunError> {
         let mut all = Vec::new();
         for line in self.lines {

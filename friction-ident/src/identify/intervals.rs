@@ -177,16 +177,16 @@ fn reach(task: &Identification<'_>, x: &[f64], k: usize, first: f64, limit: Limi
     let mut within = (0.0, 0.0);
     let origin = mean_square(&task.residuals(&[x.to_vec()])[0]);
     loop {
-        from[k] = free.moved(x[k], share);
+        from[k] = task.domain.shifted(k, x[k], share);
         let ends = from[k] <= free.low || from[k] >= free.high;
-        from = task.refine_but(&from, Some(k)).position;
+        from = task.refine_but(&from, k).position;
         let square = mean_square(&task.residuals(std::slice::from_ref(&from))[0]);
         if !limit.allows(task, &from, square) {
             if fits_at_bound(task, x, k, first, limit) {
                 return if first > 0.0 { free.high } else { free.low };
             }
             let excess = limit.square - origin;
-            return free.moved(x[k], between(within, (share, square - origin), excess));
+            return task.domain.shifted(k, x[k], between(within, (share, square - origin), excess));
         }
         if ends {
             return from[k];
@@ -205,7 +205,7 @@ fn fits_at_bound(task: &Identification<'_>, x: &[f64], k: usize, side: f64, limi
     let free = &task.free()[k];
     let mut at = x.to_vec();
     at[k] = if side > 0.0 { free.high } else { free.low };
-    let at = task.refine_but(&at, Some(k)).position;
+    let at = task.refine_but(&at, k).position;
     let square = mean_square(&task.residuals(std::slice::from_ref(&at))[0]);
     limit.allows(task, &at, square)
 }
@@ -220,17 +220,17 @@ fn between(within: (f64, f64), beyond: (f64, f64), limit: f64) -> f64 {
 /// Derivatives of the errors by the free parameters, per share of the width of the search.
 fn jacobian(task: &Identification<'_>, x: &[f64]) -> DMatrix<f64> {
     let mut candidates = Vec::new();
-    for (k, free) in task.free().iter().enumerate() {
+    for k in 0..x.len() {
         for side in [1.0, -1.0] {
             let mut candidate = x.to_vec();
-            candidate[k] = free.moved(x[k], side * DIFFERENCE);
+            candidate[k] = task.domain.shifted(k, x[k], side * DIFFERENCE);
             candidates.push(candidate);
         }
     }
     let errors = task.residuals(&candidates);
     let width = |k: usize| {
-        let free = &task.free()[k];
-        free.share(candidates[2 * k][k]) - free.share(candidates[2 * k + 1][k])
+        let share = |candidate: usize| task.domain.share(k, candidates[candidate][k]);
+        share(2 * k) - share(2 * k + 1)
     };
     let samples = errors.first().map_or(0, Vec::len);
     DMatrix::from_fn(samples, x.len(), |i, k| {

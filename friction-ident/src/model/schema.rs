@@ -89,8 +89,8 @@ mod tests {
     use crate::model::Model;
     use boon::{Compiler, SchemaIndex, Schemas};
 
-    /// The file in the repository.
-    const PUBLISHED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../schema/model.schema.json");
+    /// The file in the package.
+    const PUBLISHED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/schema/model.schema.json");
 
     fn published() -> Value {
         let text = std::fs::read_to_string(PUBLISHED).unwrap();
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(
             published(),
             now,
-            "schema/model.schema.json is not up to date; AEP_WRITE_SCHEMA=1 cargo test -p friction-ident schema writes it"
+            "friction-ident/schema/model.schema.json is not up to date; AEP_WRITE_SCHEMA=1 cargo test -p friction-ident schema writes it"
         );
     }
 
