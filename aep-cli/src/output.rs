@@ -19,7 +19,7 @@ mod table;
 mod views;
 
 pub use check::data_check;
-pub use confirmation::confirmation;
+pub use confirmation::{confirmation, surrogates};
 pub use discovery::{
     Columns, compared, comparisons, ladder, note, notes, parameters, ranking, regimes, verdict,
     where_it_fails, why,

@@ -43,7 +43,12 @@ pub const STOPPED: &str =
 /// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
     let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::new(&whole, &Options { bandwidth, library: library() })?)
+    Ok(FrictionFamily::new(&whole, &options(bandwidth))?)
+}
+
+/// How a recording is prepared.
+pub fn options(bandwidth: Option<f64>) -> Options {
+    Options { bandwidth, library: library() }
 }
 
 /// Reads MODEL.json.
@@ -182,6 +187,7 @@ pub fn comparison(
         diagnosis_base: None,
         views: Vec::new(),
         confirmation: None,
+        surrogates: None,
         plots: family.plots(&base.model, &last.model),
     };
     if !watch.is_over() {

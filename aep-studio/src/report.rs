@@ -43,6 +43,7 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
         verdict::head(discovery, source),
         ladder::section(discovery),
         confirmation::section(discovery),
+        confirmation::surrogates(discovery),
         where_it_fails::section(discovery),
         residual::section(discovery),
         curves(discovery),

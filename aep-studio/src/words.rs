@@ -6,6 +6,7 @@ use missing_physics::missing_force::MissingForce;
 use missing_physics::quantity::{number, percent, quantity};
 use missing_physics::report::{Candidate, Discovery, Estimate, Rung, SplitError, Verdict};
 use missing_physics::residual_tests::Whiteness;
+use missing_physics::surrogates::Surrogates;
 
 mod compared;
 
@@ -348,6 +349,17 @@ pub fn confirmations(confirmed: &Confirmed) -> Vec<String> {
         Some(format!("{} is {said} by the other recordings.", here.added.as_ref()?))
     };
     confirmed.rungs.iter().filter_map(said).collect()
+}
+
+/// What surrogates say of false alarms: the sum, and every name.
+pub fn surrogates(found: &Surrogates) -> Vec<String> {
+    let Surrogates { count, named } = found;
+    let sum = format!(
+        "{} of {count} surrogates were given a name: recordings that the last model would have made, with its own errors \
+         in another order. They hold nothing to find, so that every name is a false alarm.",
+        named.len()
+    );
+    std::iter::once(sum).chain(named.iter().map(|set| set.join(" + "))).collect()
 }
 
 #[cfg(test)]

@@ -161,7 +161,7 @@ fn anew<F: ModelFamily + ?Sized>(
     here: &mut Confirmation,
 ) -> Result<(), DiscoverError> {
     let base = effects.to_vec();
-    let once = Settings { base, exclude: settings.exclude.clone(), most: 0, ..*settings };
+    let once = Settings { base, most: 0, ..settings.clone() };
     let found = suggest(family, &once, &mut ())?;
     let candidates = found.ranking.first().map_or(&[][..], Vec::as_slice);
     // Another form of the effect may be the one that shows more here.

@@ -10,10 +10,13 @@ use crate::fit::{self, Fit};
 use crate::report::Discovery;
 
 /// What is asked of a discovery.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Settings<'a> {
     /// Names of the terms of the base model (those of every model need not be named).
     pub base: Vec<String>,
+    /// The base model as it is known already, near which it is fitted; else it is searched for. Only where the family
+    /// predicts one sample ahead.
+    pub start: Option<Fitted>,
     /// Names of terms that are not to be tried.
     pub exclude: Vec<String>,
     /// Seed of every random choice.
@@ -36,6 +39,7 @@ impl Default for Settings<'_> {
     fn default() -> Self {
         Self {
             base: Vec::new(),
+            start: None,
             exclude: Vec::new(),
             seed: 1,
             alpha: 0.05,
@@ -188,12 +192,7 @@ pub fn suggest<F: ModelFamily + ?Sized>(
     settings: &Settings<'_>,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {
-    let once = Settings {
-        base: settings.base.clone(),
-        exclude: settings.exclude.clone(),
-        most: 0,
-        ..*settings
-    };
+    let once = Settings { most: 0, ..settings.clone() };
     discover(family, &once, observer)
 }
 

@@ -35,6 +35,7 @@ pub mod search;
 pub mod shapes;
 pub mod spectrum;
 pub mod split;
+pub mod surrogates;
 mod tried;
 pub mod uncertainty;
 pub mod verdict;

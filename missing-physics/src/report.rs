@@ -12,6 +12,7 @@ use crate::confirm::Confirmed;
 use crate::diagnosis::Diagnosis;
 use crate::metrics::SplitMetrics;
 use crate::missing_force::MissingForce;
+use crate::surrogates::Surrogates;
 use crate::views::View;
 
 /// What the data say.
@@ -209,6 +210,9 @@ pub struct Discovery {
     /// What other recordings say of the ladder, where there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confirmation: Option<Confirmed>,
+    /// How many false alarms surrogates of the recording gave, where they were asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub surrogates: Option<Surrogates>,
     /// Size of the error that no model can remove, by quantity.
     pub noise_floor: BTreeMap<String, f64>,
     /// Size of each effect that would have been seen, in words, by effect.

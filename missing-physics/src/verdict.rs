@@ -219,6 +219,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         diagnosis_base: None,
         views: Vec::new(),
         confirmation: None,
+        surrogates: None,
         plots: family.plots(&evidence.base.model, &evidence.last.model),
     }
 }

@@ -45,6 +45,10 @@ pub struct Args {
     /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them
     #[arg(long, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
+    /// False alarms on this very axis: search N surrogates of the recording (what the last model would have made, its own
+    /// errors in another order), which hold nothing to find. Each takes as long as a discovery
+    #[arg(long, value_name = "N")]
+    surrogates: Option<usize>,
     /// Where the data cannot tell effects apart: write a motion that would (time and position)
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
@@ -64,6 +68,7 @@ Examples:
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
   aep discover run.csv --explain                         everything that was compared, and why
+  aep discover run.csv --surrogates 20                   how often it would name what is not there
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
   aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
 
@@ -104,6 +109,19 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         confirmed = output::confirmation(&discovery, &found);
         discovery.confirmation = Some(found);
     }
+    let mut alarms = String::new();
+    if let Some(count) = args.surrogates.filter(|_| go_on)
+        && let Some(last) = discovery.ladder.last()
+    {
+        let model = steps::model(&family, last)?;
+        let options = steps::options(args.bandwidth);
+        let found = family.false_alarms(&model, (&settings, &options), count, |k| {
+            progress.say(&format!("surrogate {} of {count}", k + 1));
+            !watch.is_interrupted()
+        })?;
+        alarms = output::surrogates(&found);
+        discovery.surrogates = Some(found);
+    }
     let mut proposal = Proposal::default();
     if let Some(path) = args.experiment.as_ref().filter(|_| go_on) {
         progress.say("looking for an experiment that tells them apart");
@@ -131,7 +149,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let next = if args.data.is_empty() { crate::example::next() } else { next(args, &discovery) };
     let files = if files.is_empty() { files } else { format!("\n{files}") };
     let story = story(&discovery, &settings.thresholds, args.run.explain);
-    output::print(&(story + &confirmed + &proposal.text + &files + &next))?;
+    output::print(&(story + &confirmed + &alarms + &proposal.text + &files + &next))?;
     watch.end()
 }
 

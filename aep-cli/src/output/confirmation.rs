@@ -5,9 +5,19 @@ use std::fmt::Write;
 use aep_studio::words;
 use missing_physics::Discovery;
 use missing_physics::confirm::Confirmed;
+use missing_physics::surrogates::Surrogates;
 
 use super::style::{dim, heading};
 use super::table::{Align, Table};
+
+/// What surrogates of the recording say of false alarms.
+pub fn surrogates(found: &Surrogates) -> String {
+    let mut text = heading("On surrogates of this recording");
+    for line in words::surrogates(found) {
+        let _ = writeln!(text, " {line}");
+    }
+    text
+}
 
 /// The rungs of a discovery on recordings that had no part in it.
 pub fn confirmation(discovery: &Discovery, confirmed: &Confirmed) -> String {

@@ -243,6 +243,22 @@ fn where_nothing_is_ambiguous_no_experiment_is_written() {
     assert!(desk.json("out.json")["experiment"].is_null());
 }
 
+#[test]
+fn surrogates_of_a_recording_hold_nothing_to_find() {
+    let desk = Desk::new();
+    let run = desk
+        .aep("discover --time-limit none --surrogates 2 --json out.json --html out.html")
+        .done()
+        .to_owned();
+    assert!(run.contains("0 of 2 surrogates were given a name"), "{run}");
+    assert!(desk.read("out.html").contains("0 of 2 surrogates were given a name"));
+    let surrogates = &desk.json("out.json")["surrogates"];
+    assert_eq!(
+        (surrogates["count"].as_u64(), surrogates["named"].as_array()),
+        (Some(2), Some(&vec![]))
+    );
+}
+
 /// Files of the XL330 recorded at one gain, as words of a command.
 fn servo(gain: &str) -> Option<String> {
     let runs = ["lift_and_drop", "sin_sin", "sin_time_square", "up_and_down"];

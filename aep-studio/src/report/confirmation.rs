@@ -31,3 +31,12 @@ pub(super) fn section(discovery: &Discovery) -> String {
         &format!("{}<p>{said}</p>", table(&headings, &rows)),
     )
 }
+
+/// The section of surrogates; nothing where none were asked for.
+pub(super) fn surrogates(discovery: &Discovery) -> String {
+    let Some(found) = &discovery.surrogates else {
+        return String::new();
+    };
+    let said = escape(&words::surrogates(found).join("\n")).replace('\n', "<br>");
+    html::section("surrogates", "On surrogates of this recording", "", &format!("<p>{said}</p>"))
+}

@@ -302,7 +302,7 @@ fn hump(form: &str, height: Option<f64>, speed: Option<f64>, exponent: Option<f6
 
 #[cfg(test)]
 mod tests {
-    use missing_physics::{Channel, Recording};
+    use missing_physics::{Channel, Parameter, Recording};
 
     use super::*;
     use crate::family::Options;

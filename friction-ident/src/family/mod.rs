@@ -16,6 +16,7 @@ mod limits;
 mod plots;
 mod preparation;
 mod regimes;
+mod surrogates;
 mod sweep;
 mod views;
 mod words;

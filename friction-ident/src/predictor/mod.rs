@@ -15,6 +15,7 @@ mod missing;
 mod noise;
 mod response;
 mod stale;
+mod surrogate;
 
 use std::ops::Range;
 
@@ -283,6 +284,16 @@ impl Predictor {
     fn follow(
         &self,
         trials: &[(Model, usize)],
+        see: impl FnMut(usize, usize, &Step),
+    ) -> Result<(), SimulationError> {
+        self.follow_errors(trials, |n, shown| self.position[n] - shown, see)
+    }
+
+    /// The same with errors of the caller's: from the number of the sample and the position that a model shows there.
+    fn follow_errors(
+        &self,
+        trials: &[(Model, usize)],
+        mut error: impl FnMut(usize, f64) -> f64,
         mut see: impl FnMut(usize, usize, &Step),
     ) -> Result<(), SimulationError> {
         let lanes = trials.len();
@@ -313,10 +324,9 @@ impl Predictor {
                     plants.step(&length, &command);
                 }
                 let n = k + 1;
-                let (measured, shown, velocity) =
-                    (self.position[n], plants.shown(), plants.velocity());
+                let (shown, velocity) = (plants.shown(), plants.velocity());
                 for i in 0..lanes {
-                    let error = measured - shown[i];
+                    let error = error(n, shown[i]);
                     let rests = velocity[i].abs() < self.rest_speed;
                     let g = if rests { at_rest[i] } else { gain[i] };
                     let finite = error.is_finite();

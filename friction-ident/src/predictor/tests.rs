@@ -237,3 +237,24 @@ fn the_response_to_a_ripple_is_what_a_simulation_of_it_changes() {
         }
     }
 }
+
+#[test]
+fn a_surrogate_leaves_its_model_the_same_errors_in_another_order() {
+    let hidden = table().with("stribeck", &[("dF", 3.0)]).unwrap();
+    let predictor = predictor(&recording(&hidden, Hold::ZeroOrder, QUIET));
+    let (setting, _) = best(&predictor, &table());
+    let errors = |predictor: &Predictor| {
+        let mut all = Vec::new();
+        predictor.follow(&[(table(), setting)], |_, _, step| all.push(step.error)).unwrap();
+        all
+    };
+    let position = predictor.surrogate(&table(), setting, 3).unwrap();
+    assert_eq!(predictor.surrogate(&table(), setting, 3).unwrap(), position);
+    assert_ne!(predictor.surrogate(&table(), setting, 4).unwrap(), position);
+    let before = errors(&predictor);
+    let after = errors(&Predictor { position, ..predictor });
+    // Where it begins the speed is told by other samples.
+    assert!((rms(&after[300..]) / rms(&before[300..]) - 1.0).abs() < 0.03);
+    let same = before.iter().zip(&after).filter(|(a, b)| (*a - *b).abs() < 1e-12).count();
+    assert!(same < before.len() / 10, "{same} of {}", before.len());
+}

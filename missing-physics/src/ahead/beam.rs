@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::compare::{Comparison, Difference};
 use super::decision::{Decision, Outcome};
-use super::fit::Fitter;
+use super::fit::{self, Fitter};
 use super::found::{Found, Ranked};
 use super::node::Node;
 use super::screen::{Promise, Screened, screen};
@@ -139,6 +139,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             node = fitter.fit(node.model, setting, BASE);
         }
         fitter.settled(node, STEPS.0)
+    }
+
+    /// The base model at its best, from a start that is near.
+    pub fn base_near(&self, start: Fitted) -> Node {
+        let setting = fit::best_setting(self.ahead, &start);
+        Fitter::new(self.family, self.ahead).refit(start, setting, STEPS.0)
     }
 
     /// Sets of one effect beside a base model.

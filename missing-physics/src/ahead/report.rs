@@ -89,9 +89,6 @@ impl Run<'_> {
         ahead: &'b dyn Ahead,
     ) -> (Search<'b, F>, Climb) {
         let (base, excluded) = self.sets;
-        let everywhere = vec![1.0; family.target().len()];
-        let start = search::identify(family, base, &everywhere, self.settings.seed);
-        (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
         let candidates: Vec<usize> = (0..family.terms().len())
             .filter(|&term| {
                 let main = family.form_of(term).unwrap_or(term);
@@ -102,7 +99,15 @@ impl Run<'_> {
             .collect();
         let thresholds = self.thresholds().in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
-        let base = search.base(start.fit.model);
+        let base = match &self.settings.start {
+            Some(near) => search.base_near(near.clone()),
+            None => {
+                let everywhere = vec![1.0; family.target().len()];
+                let start = search::identify(family, base, &everywhere, self.settings.seed);
+                (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
+                search.base(start.fit.model)
+            }
+        };
         let climb = search.begin(base);
         (search, climb)
     }
@@ -214,6 +219,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             diagnosis_base: None,
             views: Vec::new(),
             confirmation: None,
+            surrogates: None,
             plots: family.plots(&base_fit.model, &last_fit.model),
         };
         diagnosis::attach(family, &base_fit, last_fit, self.settings.seed, &mut discovery);

@@ -242,7 +242,7 @@ fn what_the_data_cannot_tell_apart_is_ambiguous_beside_whatever_base() {
 
 #[test]
 fn an_effect_whose_plain_form_is_none_is_not_named_where_that_form_is_as_good() {
-    let mut plant = Plant::new(5, &[(BENT, &[0.05, 0.002])]);
+    let mut plant = Plant::new(5, &[(BENT, &[0.05, 0.0008])]);
     assert_eq!(found(&plant, Thresholds::default(), 1).added, [WAVE]);
     plant.none = Some(WAVE);
     let found = found(&plant, Thresholds::default(), 1);
