@@ -116,7 +116,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         let model = steps::model(&family, last)?;
         let options = steps::options(args.bandwidth);
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
-            progress.say(&format!("surrogate {} of {count}", k + 1));
+            progress.say(format!("surrogate {} of {count}", k + 1));
             !watch.is_interrupted()
         })?;
         alarms = output::surrogates(&found);

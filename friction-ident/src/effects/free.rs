@@ -29,8 +29,34 @@ pub struct FrictionStep;
 pub struct ForceOverPosition;
 
 /// What no effect of the library may be mistaken for.
-pub static RIVALS: [&dyn Effect; 4] =
-    [&FrictionOverTime, &FrictionStep, &ForceOverTime, &ForceOverPosition];
+pub struct Free {
+    /// Its law. Its values are 0 where there is nothing.
+    pub effect: &'static dyn Effect,
+    /// What it is, in words.
+    pub words: &'static str,
+    /// Effects that are one shape of it.
+    pub kin: &'static [&'static str],
+}
+
+/// All of them, in the order in which they are asked.
+pub static RIVALS: [Free; 4] = [
+    Free {
+        effect: &FrictionOverTime,
+        words: "a friction level that varies freely with time",
+        kin: &["drift"],
+    },
+    Free {
+        effect: &FrictionStep,
+        words: "a friction level that changes at one moment",
+        kin: &["drift"],
+    },
+    Free { effect: &ForceOverTime, words: "a force that varies freely with time", kin: &[] },
+    Free {
+        effect: &ForceOverPosition,
+        words: "a force that varies freely along the stroke",
+        kin: &["spring", "gravity-pendulum", "ripple"],
+    },
+];
 
 /// Share of the recording over which a step rises: a fit has to feel where it is.
 const RISE: f64 = 0.005;

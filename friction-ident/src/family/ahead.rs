@@ -8,20 +8,10 @@ use missing_physics::missing_force::Series;
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
+use crate::effects::free::{Free, RIVALS};
 use crate::model::Model;
 use crate::predictor::{Predictor, Wave};
 
-/// What stands for no effect, what it is, and the effects that are shapes of it.
-const RIVALS: [(&str, &str, &[&str]); 4] = [
-    ("friction-over-time", "a friction level that varies freely with time", &["drift"]),
-    ("friction-step", "a friction level that changes at one moment", &["drift"]),
-    ("force-over-time", "a force that varies freely with time", &[]),
-    (
-        "force-over-position",
-        "a force that varies freely along the stroke",
-        &["spring", "gravity-pendulum", "ripple"],
-    ),
-];
 /// Effects with a period along the stroke.
 const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
@@ -231,9 +221,9 @@ impl Ahead for View<'_> {
 
     fn rivals(&self) -> Vec<Rival> {
         let term = |name: &str| self.family.terms.iter().position(|term| term.name == name);
-        let rival = |(name, words, kin): &(&str, &'static str, &[&str])| {
-            let kin = kin.iter().filter_map(|name| term(name)).collect();
-            Some(Rival { term: term(name)?, words, kin })
+        let rival = |free: &Free| {
+            let kin = free.kin.iter().filter_map(|name| term(name)).collect();
+            Some(Rival { term: term(free.effect.about().name)?, words: free.words, kin })
         };
         RIVALS.iter().filter_map(rival).collect()
     }

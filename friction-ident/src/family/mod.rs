@@ -113,7 +113,7 @@ impl FrictionFamily {
         let main = options.library.effects().iter().copied().filter(|effect| effect.suits(axis));
         let effects: Vec<&'static dyn Effect> = main
             .flat_map(|effect| std::iter::once(effect).chain(effect.forms().iter().copied()))
-            .chain(RIVALS)
+            .chain(RIVALS.iter().map(|free| free.effect))
             .collect();
         let limits = limits::Limits::of(&prepared, axis, stroke);
         let mut terms = vec![limits.mass()];
@@ -427,7 +427,7 @@ impl ModelFamily for FrictionFamily {
             return false;
         };
         let name = effect.about().name;
-        if INVISIBLE.contains(&name) || RIVALS.iter().any(|rival| rival.about().name == name) {
+        if INVISIBLE.contains(&name) || RIVALS.iter().any(|free| free.effect.about().name == name) {
             return false;
         }
         self.model(model).and_then(|plant| plant.with_effect(effect)).is_ok()

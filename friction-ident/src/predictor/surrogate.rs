@@ -52,7 +52,7 @@ fn shuffled(values: &[f64], length: usize, seed: u64) -> Vec<f64> {
         let sign = if random.random() { 1.0 } else { -1.0 };
         block.iter().map(|value| sign * value).collect()
     };
-    blocks.into_iter().flat_map(|block| signed(block)).collect()
+    blocks.into_iter().flat_map(&mut signed).collect()
 }
 
 #[cfg(test)]

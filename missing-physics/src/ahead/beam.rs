@@ -42,9 +42,9 @@ const INSIDE: f64 = 1.12;
 /// so well.
 const HOPELESS: f64 = 0.5;
 /// Candidates that are fitted before it is asked whether others are needed, and the share of their promise from which
-/// another one is a rival.
+/// another one is.
 const FIRST: usize = 2;
-const RIVAL: f64 = 0.1;
+const COMPARABLE: f64 = 0.1;
 /// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
 const AGAIN: usize = 8;
 /// Share of an amplitude of every model below which nothing of it is left.
@@ -335,15 +335,15 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let begin = |promises: &[&Promise]| -> Vec<(usize, Option<Node>)> {
             promises.par_iter().map(|p| (p.term, self.begun(p, from.setting))).collect()
         };
-        // Where one of the first leaves no more than the sensors make, only those that promise as much are rivals.
+        // Where one of the first leaves no more than the sensors make, only those that promise as much are needed.
         let (first, others) = starts.split_at(FIRST.min(starts.len()));
         let mut fitted = begin(first);
         let inside =
             fitted.iter().flat_map(|(_, node)| node).any(|node| self.budget(node) < INSIDE);
         let top = starts.first().map_or(0.0, |promise| promise.gain);
-        let rivals: Vec<&Promise> =
-            others.iter().copied().filter(|p| !inside || p.gain >= RIVAL * top).collect();
-        fitted.extend(begin(&rivals));
+        let needed: Vec<&Promise> =
+            others.iter().copied().filter(|p| !inside || p.gain >= COMPARABLE * top).collect();
+        fitted.extend(begin(&needed));
         self.untried
             .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
         let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
@@ -485,10 +485,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                     Some((*last, format!("nothing of {} is left", term.key(parameter))))
                 }
                 None if moved.is_at_far_limit() => {
-                    let of = |t: &&usize| std::ptr::eq(&self.family.terms()[**t], term);
-                    let term_at = node.model.terms.iter().find(of)?;
+                    let mut terms = (0..).zip(&node.model.terms);
+                    let of = |place| node.model.range(self.family, place).contains(&k);
+                    let (_, owner) = terms.find(|(place, _)| of(*place))?;
                     let key = term.key(parameter);
-                    Some((*term_at, format!("{key} ended at the limit of its search")))
+                    Some((*owner, format!("{key} ended at the limit of its search")))
                 }
                 None => None,
             },

@@ -99,14 +99,13 @@ impl Run<'_> {
             .collect();
         let thresholds = self.thresholds().in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
-        let base = match &self.settings.start {
-            Some(near) => search.base_near(near.clone()),
-            None => {
-                let everywhere = vec![1.0; family.target().len()];
-                let start = search::identify(family, base, &everywhere, self.settings.seed);
-                (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
-                search.base(start.fit.model)
-            }
+        let base = if let Some(near) = &self.settings.start {
+            search.base_near(near.clone())
+        } else {
+            let everywhere = vec![1.0; family.target().len()];
+            let start = search::identify(family, base, &everywhere, self.settings.seed);
+            (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
+            search.base(start.fit.model)
         };
         let climb = search.begin(base);
         (search, climb)
