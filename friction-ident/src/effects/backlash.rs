@@ -2,7 +2,9 @@
 
 mod two_mass;
 
-use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
+use super::{
+    About, AsFound, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+};
 use crate::axis::Quantity;
 use crate::simd::sign;
 
@@ -14,6 +16,9 @@ pub struct Backlash;
 
 const WIDTH: Parameter =
     Parameter::shape("b", "width of the gap", Quantity::Length, (1e-6, 1e-2), 2e-5);
+
+/// A gap below this multiple of the least one is none.
+const CLOSED: f64 = 1.05;
 
 static FORMS: [&dyn Effect; 1] = [&two_mass::TwoMass];
 static ABOUT: About = About {
@@ -41,6 +46,15 @@ impl Effect for Backlash {
     fn memory(&self) -> Option<&dyn Memory> {
         Some(self)
     }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+        closed(found.values[1], found.least[1])
+    }
+}
+
+/// Why a gap is none that is as narrow as its search allows: it is a coupling then.
+fn closed(gap: f64, least: f64) -> Option<String> {
+    (gap <= CLOSED * least).then(|| ".b is as narrow as it may be".to_owned())
 }
 
 /// State: place of the drive in the gap, -1/2..1/2 of its width.

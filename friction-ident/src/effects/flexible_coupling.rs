@@ -5,7 +5,7 @@ mod friction;
 use std::f64::consts::TAU;
 
 use super::{
-    About, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step,
+    About, AsFound, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step,
 };
 use crate::axis::Quantity;
 use crate::simd::add_to;
@@ -25,6 +25,15 @@ const FREQUENCY: Parameter = Parameter::shape(
 );
 const ZETA: Parameter =
     Parameter::shape("zeta", "its damping ratio", Quantity::One, (1e-3, 2.0), 0.05);
+
+/// Damping ratio from which on a resonance has no half-power bandwidth, as its peak does not reach the square root of 2:
+/// sqrt((1 - 1/sqrt 2)/2).
+const SILENT: f64 = 0.383;
+
+/// Why a coupling with this damping ratio is none.
+fn silent(zeta: f64) -> Option<String> {
+    (zeta >= SILENT).then(|| format!(".zeta is {zeta:.2}: nothing rings"))
+}
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];
 static ABOUT: About = About {
@@ -48,6 +57,10 @@ impl Effect for FlexibleCoupling {
 
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+        silent(found.values[2])
     }
 }
 

@@ -5,6 +5,7 @@
 //! into a [`Library`].
 
 mod about;
+mod as_found;
 mod drive;
 mod element;
 mod lanes;
@@ -48,6 +49,7 @@ mod testing;
 use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
+pub use as_found::AsFound;
 pub use drive::{Advance, Drive};
 pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
@@ -110,6 +112,12 @@ pub trait Effect: Sync + Send {
     /// Whether a hook depends on `m.dwell`.
     fn reads_dwell(&self) -> bool {
         false
+    }
+
+    /// Why it is no such effect as it was fitted (a gap of no width), in words that go on after its name; nothing where it
+    /// is one.
+    fn refused(&self, _found: &AsFound<'_>) -> Option<String> {
+        None
     }
 
     /// Whether a comparison of forces along a measured motion can show it at all, apart from other forms of it.

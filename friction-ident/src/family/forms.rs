@@ -4,6 +4,7 @@ use missing_physics::Fitted;
 use missing_physics::ahead::Trial;
 
 use super::FrictionFamily;
+use crate::effects::AsFound;
 
 /// Each form and the more flexible one that takes its place before another effect is named.
 const FLEXIBLE: [(&str, &str); 13] = [
@@ -39,11 +40,6 @@ const BEHIND_GAP: [f64; 3] = [0.35, 0.55, 0.75];
 const FREQUENCIES: (usize, f64, f64) = (10, 3.0, 0.25);
 /// Trial gaps of a backlash, from this many standard deviations of the position to a share of the stroke.
 const GAPS: (usize, f64, f64) = (16, 4.0, 0.01);
-/// A gap below this multiple of the least one is none.
-const CLOSED: f64 = 1.05;
-/// Damping ratio from which on a resonance has no half-power bandwidth, as its peak does not reach the square root of 2:
-/// sqrt((1 - 1/sqrt 2)/2).
-const SILENT: f64 = 0.383;
 /// Frequency of the contact at the end of a gap, Hz, and damping of contact and coupling.
 const CONTACT: f64 = 150.0;
 const DAMPING: (f64, f64) = (0.1, 0.05);
@@ -233,32 +229,20 @@ impl FrictionFamily {
         others.iter().filter_map(each).collect()
     }
 
-    /// A second body that was fitted without what makes it one, and why, in words: a gap with next to no width or with a
-    /// contact that gives more than it (both are a coupling), or a coupling that is damped so much that nothing rings.
+    /// A term that is no such effect as it was fitted, and why.
     pub(super) fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
-        let said = |term: &usize| {
-            let name = self.terms[*term].name.as_str();
-            let of = |parameter: &str| self.value(model, name, parameter);
-            if name.starts_with("backlash") {
-                let gap = of("b")?;
-                let limits = self.terms[*term].parameters.iter().find(|p| p.name == "b")?;
-                if gap <= CLOSED * limits.lower {
-                    return Some(format!("{name}.b is as narrow as it may be"));
-                }
-                let (stiffness, load) = (of("k")?, of("m_L")?);
-                let gives = self.force() * load / (load + model.values[0]) / stiffness;
-                let soft = gives > 0.5 * gap;
-                return soft
-                    .then(|| format!("the contact of {name} gives more than its gap is wide"));
-            }
-            if name.starts_with("flexible-coupling") {
-                let damping = of("zeta")?;
-                let silent = damping >= SILENT;
-                return silent.then(|| format!("{name}.zeta is {damping:.2}: nothing rings"));
-            }
-            None
-        };
-        model.terms.iter().find_map(|term| Some((*term, said(term)?)))
+        model.terms.iter().enumerate().find_map(|(place, term)| {
+            let effect = self.effects[term.checked_sub(1)?];
+            let least: Vec<f64> = self.terms[*term].parameters.iter().map(|p| p.lower).collect();
+            let found = AsFound {
+                values: &model.values[model.range(self, place)],
+                least: &least,
+                mass: model.values[0],
+                force: self.force(),
+            };
+            let why = effect.refused(&found)?;
+            Some((*term, format!("{}{why}", effect.about().name)))
+        })
     }
 
     /// Rms of the recorded force.
@@ -353,7 +337,7 @@ mod tests {
         let gap = |k: f64, b: f64| said(&family, "backlash:two-mass", &[("k", k), ("b", b)]);
         assert_eq!(gap(1e7, 3e-5), None);
         assert_eq!(gap(1e6, 3e-5), None);
-        assert!(gap(3e5, 3e-5).unwrap().contains("gives more than its gap"));
+        assert!(gap(3e5, 3e-5).unwrap().ends_with("gives more than its gap is wide"));
         let least = family.terms.iter().find(|term| term.name == "backlash:two-mass").unwrap();
         let least = least.parameters.iter().find(|p| p.name == "b").unwrap().lower;
         assert!(gap(1e9, least).unwrap().contains("as narrow as it may be"));

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use super::super::load::{Connection, Load, Pulled};
 use super::{
-    About, Correction, Effect, Element, FREQUENCY, LOAD, Onset, Parameter, Parameters, Response,
-    Slot, Step, ZETA,
+    About, AsFound, Correction, Effect, Element, FREQUENCY, LOAD, Onset, Parameter, Parameters,
+    Response, Slot, Step, ZETA, silent,
 };
 use crate::axis::Quantity;
 use crate::simd::{add_to, vectorised};
@@ -68,6 +68,10 @@ impl Effect for WithFriction {
 
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+        silent(found.values[2])
     }
 }
 
