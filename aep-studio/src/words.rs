@@ -353,18 +353,36 @@ pub fn confirmations(confirmed: &Confirmed) -> Vec<String> {
 
 /// What surrogates say of false alarms: the sum, and every name.
 pub fn surrogates(found: &Surrogates) -> Vec<String> {
-    let Surrogates { count, named } = found;
+    let Surrogates { asked, count, named } = found;
     let sum = format!(
         "{} of {count} surrogates were given a name: recordings that the last model would have made, with its own errors \
          in another order. They hold nothing to find, so that every name is a false alarm.",
         named.len()
     );
-    std::iter::once(sum).chain(named.iter().map(|set| set.join(" + "))).collect()
+    let cut = (count < asked).then(|| {
+        format!(
+            "{} more were asked for and do not count: they could not be made from the last model, or were not searched to \
+             the end (--time-limit gives each of them more time).",
+            asked - count
+        )
+    });
+    std::iter::once(sum).chain(cut).chain(named.iter().map(|set| set.join(" + "))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn surrogates_that_were_not_searched_to_the_end_are_no_silence() {
+        let named = vec![vec!["spring".to_owned()]];
+        let all = surrogates(&Surrogates { asked: 3, count: 3, named: named.clone() });
+        assert!(all[0].starts_with("1 of 3 surrogates were given a name"), "{all:?}");
+        assert_eq!(all[1..], ["spring"]);
+        let cut = surrogates(&Surrogates { asked: 3, count: 1, named });
+        assert!(cut[0].starts_with("1 of 1 surrogates"), "{cut:?}");
+        assert!(cut[1].starts_with("2 more were asked for and do not count"), "{cut:?}");
+    }
 
     #[test]
     fn keys_of_errors_become_words_with_units() {

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 /// What discoveries named in surrogates, where there was nothing to name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Surrogates {
-    /// Number of surrogates that were looked at.
+    /// Number of surrogates that were asked for.
+    pub asked: usize,
+    /// Number of them that were searched to the end: of the others nothing is known.
     pub count: usize,
     /// Effects named in those in which any were.
     pub named: Vec<Vec<String>>,

@@ -1,5 +1,6 @@
 //! `aep discover`: the main job.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use aep_studio::words;
@@ -46,9 +47,10 @@ pub struct Args {
     #[arg(long, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
     /// False alarms on this very axis: search N surrogates of the recording (what the last model would have made, its own
-    /// errors in another order), which hold nothing to find. Each takes as long as a discovery
+    /// errors in another order), which hold nothing to find. Each takes as long as the
+    /// first rung of a discovery
     #[arg(long, value_name = "N")]
-    surrogates: Option<usize>,
+    surrogates: Option<NonZeroUsize>,
     /// Where the data cannot tell effects apart: write a motion that would (time and position)
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
@@ -115,6 +117,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     {
         let model = steps::model(&family, last)?;
         let options = steps::options(args.bandwidth);
+        let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
             progress.say(format!("surrogate {} of {count}", k + 1));
             !watch.is_interrupted()

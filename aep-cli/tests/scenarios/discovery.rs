@@ -253,6 +253,7 @@ fn surrogates_of_a_recording_hold_nothing_to_find() {
     assert!(run.contains("0 of 2 surrogates were given a name"), "{run}");
     assert!(desk.read("out.html").contains("0 of 2 surrogates were given a name"));
     let surrogates = &desk.json("out.json")["surrogates"];
+    assert_eq!(surrogates["asked"].as_u64(), Some(2));
     assert_eq!(
         (surrogates["count"].as_u64(), surrogates["named"].as_array()),
         (Some(2), Some(&vec![]))

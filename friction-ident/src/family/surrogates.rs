@@ -1,15 +1,13 @@
 //! How often a recording like this one gets a name that is not there.
 
-use missing_physics::ahead::{fit, statistics};
+use missing_physics::ahead::fit;
+use missing_physics::report::Verdict;
 use missing_physics::surrogates::Surrogates;
-use missing_physics::{DiscoverError, Recording, Settings, discover};
+use missing_physics::{Channel, DiscoverError, Recording, Settings, discover};
 
 use super::ahead::View;
 use super::{FrictionFamily, Options};
 use crate::model::Model;
-
-/// Cut of squares where the readings of the force are compared.
-const CUT: f64 = 25.0;
 
 impl FrictionFamily {
     /// A recording that `model` would have made under the same force, its own errors in another order; nothing where it
@@ -21,19 +19,13 @@ impl FrictionFamily {
             let setting = fit::best_setting(&ahead, &fitted);
             let node = fit::evaluated(&ahead, fitted, setting);
             let positions = ahead.ahead.predictor.surrogate(model, setting, seed)?;
-            Some((statistics::rms(&node.errors, CUT), positions, family.recording.hold()))
+            Some((node.scale, positions, family.recording.hold()))
         };
         let readings = std::iter::once(self).chain(self.other_hold.as_deref());
         let (_, positions, hold) = readings.filter_map(read).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let mut channels: Vec<_> = ["force", "position"]
-            .iter()
-            .filter_map(|name| self.recording.channel(name))
-            .cloned()
-            .collect();
-        channels
-            .iter_mut()
-            .filter(|c| c.name == "position")
-            .for_each(|c| c.values.clone_from(&positions));
+        let force = self.recording.channel("force")?.clone();
+        let position = self.recording.channel("position")?.clone();
+        let channels = vec![force, Channel { values: positions, ..position }];
         let mut piece = vec![0; self.recording.len()];
         for (number, segment) in (0..).zip(self.recording.segments()) {
             piece[segment.clone()].fill(number);
@@ -59,14 +51,18 @@ impl FrictionFamily {
         // One name is an alarm; a second one is no other.
         let start = self.fitted(model).ok();
         let settings = Settings { base, start, most: 1, ..settings.clone() };
-        let mut alarms = Surrogates::default();
+        let mut alarms = Surrogates { asked: count, ..Surrogates::default() };
         for k in 0..count {
             if !begun(k) {
                 break;
             }
-            let Some(made) = self.surrogate(model, settings.seed + k as u64) else { break };
-            let Ok(family) = FrictionFamily::new(&made, options) else { break };
+            let Some(made) = self.surrogate(model, settings.seed + k as u64) else { continue };
+            let Ok(family) = FrictionFamily::new(&made, options) else { continue };
             let found = discover(&family.with_stroke_of(self), &settings, &mut ())?;
+            // Cut before anything could be said: silence then says nothing.
+            if found.verdict == Verdict::Stopped {
+                continue;
+            }
             alarms.count += 1;
             if !found.added.is_empty() {
                 alarms.named.push(found.added);

@@ -476,25 +476,30 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// mass).
     fn refused(&self, base: &Node, node: &Node) -> Option<(usize, String)> {
         let moved = scales::of(self.family, &node.model);
-        let parameters = node.model.parameters(self.family).zip(&moved).enumerate();
-        let limited = parameters.filter(|(_, ((_, p), _))| p.role == Role::Amplitude).find_map(
-            |(k, ((term, parameter), moved))| match base.model.values.get(k) {
-                Some(before) => {
-                    let gone = term.always && node.model.values[k].abs() < GONE * before.abs();
-                    let last = node.model.terms.last().filter(|_| gone)?;
-                    Some((*last, format!("nothing of {} is left", term.key(parameter))))
+        for (place, index) in node.model.terms.iter().enumerate() {
+            let term = &self.family.terms()[*index];
+            for (k, parameter) in node.model.range(self.family, place).zip(&term.parameters) {
+                if parameter.role != Role::Amplitude {
+                    continue;
                 }
-                None if moved.is_at_far_limit() => {
-                    let mut terms = (0..).zip(&node.model.terms);
-                    let of = |place| node.model.range(self.family, place).contains(&k);
-                    let (_, owner) = terms.find(|(place, _)| of(*place))?;
-                    let key = term.key(parameter);
-                    Some((*owner, format!("{key} ended at the limit of its search")))
+                let key = || term.key(parameter);
+                let gone = |before: f64| node.model.values[k].abs() < GONE * before.abs();
+                match base.model.values.get(k) {
+                    Some(before) if term.always && gone(*before) => {
+                        let last = *node.model.terms.last()?;
+                        return Some((last, format!("nothing of {} is left", key())));
+                    }
+                    None if moved[k].is_at_far_limit() => {
+                        return Some((
+                            *index,
+                            format!("{} ended at the limit of its search", key()),
+                        ));
+                    }
+                    _ => {}
                 }
-                None => None,
-            },
-        );
-        limited.or_else(|| self.ahead.vanishes(&node.model))
+            }
+        }
+        self.ahead.vanishes(&node.model)
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::Ahead;
 use super::node::Node;
+use crate::missing_force::Series;
 use crate::quantity::quantity;
 
 /// Bins of equal count along time and each coordinate.
@@ -22,7 +23,7 @@ pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<St
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
     let mut worst: Vec<(f64, String)> = Vec::new();
-    let lacks = ahead.missing_force(&node.model, node.setting).and_then(|series| series.size());
+    let lacks = node.missing_force(ahead).and_then(Series::size);
     if let Some((rms, band)) = lacks.filter(|(rms, band)| *rms > factor * band) {
         let (rms, band) = (quantity(rms, unit), quantity(band, unit));
         let text = format!("It lacks {rms} (rms) beyond doubt: that is known to ±{band}.");
@@ -79,7 +80,6 @@ mod tests {
     use super::*;
     use crate::ahead::fit;
     use crate::ahead::testing::Plant;
-    use crate::missing_force::Series;
 
     #[test]
     fn the_bin_with_the_largest_errors_is_found() {
@@ -111,6 +111,7 @@ mod tests {
                 recorded: vec![9.0; 3],
                 known: vec![true, false, true],
             });
+            let node = fit::evaluated(&plant, Plant::model(&[]), 0);
             let places = places(&plant, &node, 2.0, "V");
             assert_eq!(places.len(), usize::from(told), "{places:?}");
             assert!(places.iter().all(|text| text.contains("2.10 V (rms)")), "{places:?}");

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use super::{Ahead, scales, statistics};
 use crate::family::{Fitted, ModelFamily};
+use crate::missing_force::Series;
 
 /// A cut for robust squares: those beyond this many times their mean count as that.
 pub const CUT: f64 = 16.0;
@@ -22,6 +23,7 @@ pub struct Node {
     jacobian: OnceLock<Vec<Vec<f64>>>,
     held_out: OnceLock<Vec<f64>>,
     correlation: OnceLock<f64>,
+    missing_force: OnceLock<Option<Series>>,
 }
 
 impl Node {
@@ -36,6 +38,7 @@ impl Node {
             jacobian: OnceLock::new(),
             held_out: OnceLock::new(),
             correlation: OnceLock::new(),
+            missing_force: OnceLock::new(),
         }
     }
 
@@ -69,6 +72,12 @@ impl Node {
     /// How many errors say as much as an independent one.
     pub fn correlation(&self) -> f64 {
         *self.correlation.get_or_init(|| statistics::correlation(&self.errors))
+    }
+
+    /// The force that the model lacks, where the family can tell.
+    pub fn missing_force(&self, ahead: &dyn Ahead) -> Option<&Series> {
+        let find = || ahead.missing_force(&self.model, self.setting);
+        self.missing_force.get_or_init(find).as_ref()
     }
 
     /// The scale at which errors are weighed: at least what is expected, and what most or all of them are.

@@ -227,8 +227,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
 
     /// The force that a model lacks, and its shares by regime; where nothing is known of it those of the error.
     fn lacks(&self, node: &Node, fit: &Fit) -> (Option<MissingForce>, Vec<RegimeShare>) {
-        let series = self.ahead.missing_force(&node.model, node.setting);
-        match series.and_then(|series| MissingForce::of(self.family, &series)) {
+        let series = node.missing_force(self.ahead);
+        match series.and_then(|series| MissingForce::of(self.family, series)) {
             Some((missing, regimes)) => (Some(missing), regimes),
             None => (None, where_it_fails::regimes(self.family, &fit.residual)),
         }
