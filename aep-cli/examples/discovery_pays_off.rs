@@ -15,9 +15,8 @@ use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{
     Axis, Library, Model, ModelError, Pd, Profile, Reference, Setup, closed_loop,
 };
-use missing_physics::discover::{Settings as Search, discover, terms};
 use missing_physics::report::Rung;
-use missing_physics::{Fitted, ModelFamily, Recording};
+use missing_physics::{Fitted, ModelFamily, Recording, Settings as Search, discover, terms};
 use plotters::prelude::*;
 
 /// Sampling time of recording and control, s.

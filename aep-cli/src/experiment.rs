@@ -6,7 +6,7 @@ use std::path::Path;
 use friction_ident::Quantity;
 use friction_ident::family::FrictionFamily;
 use friction_ident::family::experiment::{Experiment, Separation};
-use missing_physics::quantity::quantity;
+use missing_physics::measurement::quantity::quantity;
 use missing_physics::{Channel, Recording};
 use serde_json::{Value, json};
 

@@ -2,9 +2,8 @@
 
 use aep_data::Loaded;
 use aep_studio::Source;
-use missing_physics::Discovery;
-use missing_physics::ahead::Thresholds;
-use missing_physics::data_check::DataCheck;
+use missing_physics::measurement::check::DataCheck;
+use missing_physics::{Discovery, Thresholds};
 use serde_json::{Value, json};
 
 use crate::args::OutputArgs;

@@ -5,18 +5,14 @@ use std::path::Path;
 use aep_core::{Aep, MetaEp, Method};
 use friction_ident::Model;
 use friction_ident::family::{FrictionFamily, Options};
-use missing_physics::data_check::cut_at_gaps;
-use missing_physics::discover::{evaluate, terms};
-use missing_physics::fit::Fit;
-use missing_physics::metrics::SplitMetrics;
-use missing_physics::report::{Rung, Verdict};
-use missing_physics::screen::weights;
-use missing_physics::split::Split;
-use missing_physics::where_it_fails::{View, coordinates, regimes};
-use missing_physics::{
-    Coordinate, Discovery, Fitted, ModelFamily, Recording, diagnosis, ladder, noise, search,
-    uncertainty,
-};
+use missing_physics::diagnosis::where_it_fails::{View, coordinates, regimes};
+use missing_physics::diagnosis::{self, errors, noise};
+use missing_physics::fit::{self, Fit, uncertainty};
+use missing_physics::measurement::check::cut_at_gaps;
+use missing_physics::report::{Rung, SplitMetrics, Verdict};
+use missing_physics::statistics::split::Split;
+use missing_physics::statistics::weights;
+use missing_physics::{Coordinate, Discovery, Fitted, ModelFamily, Recording, terms};
 
 use crate::args::library;
 use crate::failure::Failure;
@@ -80,7 +76,7 @@ pub fn identify(
     let terms = terms(family, effects)?;
     let (_, fitted) = split(family);
     let method = Stoppable { method, watch };
-    let found = search::identify_by(family, &terms, &fitted, seed, &method);
+    let found = fit::identify_by(family, &terms, &fitted, seed, &method);
     Ok((found.fit, found.evaluations))
 }
 
@@ -94,7 +90,7 @@ pub fn method(name: &str) -> Result<Box<dyn Method<f64>>, Failure> {
 /// A given model on this data, nothing fitted.
 pub fn as_given(family: &FrictionFamily, model: &Model) -> Result<Fit, Failure> {
     same_axis(family, model)?;
-    Ok(evaluate(family, family.fitted(model)?))
+    Ok(fit::as_given(family, family.fitted(model)?))
 }
 
 /// Refuses a model of a linear axis for rotary data and the other way round.
@@ -128,7 +124,7 @@ pub fn rung(family: &FrictionFamily, fit: &Fit, added: Option<String>) -> Rung {
         added,
         effects: effects.filter(|term| !term.always).map(|term| term.name.clone()).collect(),
         parameters: uncertainty::estimates(family, fit, &fitted),
-        error: ladder::errors(family, fit, &split),
+        error: errors(family, fit, &split),
         p_value: None,
         metrics: Some(SplitMetrics::of(&fit.residual, family.target(), &split)),
         likelihood_gain: None,

@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use missing_physics::Discovery;
-use missing_physics::ahead::Thresholds;
-use missing_physics::data_check::DataCheck;
+use missing_physics::measurement::check::DataCheck;
+use missing_physics::{Discovery, Thresholds};
 
 use crate::html::{escape, section};
 use crate::plot;

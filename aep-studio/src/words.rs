@@ -1,12 +1,10 @@
 //! How a discovery is put into words, the same on the page and in the terminal.
 
-use missing_physics::confirm::{Confirmation, Confirmed};
-use missing_physics::diagnosis::Diagnosis;
-use missing_physics::missing_force::MissingForce;
-use missing_physics::quantity::{number, percent, quantity};
-use missing_physics::report::{Candidate, Discovery, Estimate, Rung, SplitError, Verdict};
-use missing_physics::residual_tests::Whiteness;
-use missing_physics::surrogates::Surrogates;
+use missing_physics::measurement::quantity::{number, percent, quantity};
+use missing_physics::report::{
+    Candidate, Confirmation, Confirmed, Diagnosis, Discovery, Estimate, MissingForce, Rung,
+    SplitError, Surrogates, Verdict, Whiteness,
+};
 
 mod compared;
 

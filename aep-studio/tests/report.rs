@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use aep_studio::{Source, report};
-use missing_physics::data_check::{DataCheck, check};
+use missing_physics::measurement::check::{DataCheck, check};
 use missing_physics::report::Verdict;
 use missing_physics::{Channel, Discovery, Recording};
 use serde_json::json;

@@ -2,8 +2,7 @@
 
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Axis, Model, Pd, Profile, Reference, Setup, closed_loop};
-use missing_physics::ahead::Thresholds;
-use missing_physics::{Channel, Discovery, Recording, Settings, discover};
+use missing_physics::{Channel, Discovery, Recording, Settings, Thresholds, discover};
 
 /// A table of 40 kg with 8 N of Coulomb and 200 N s/m of viscous friction, and one effect more.
 fn table(effect: &str, values: &[(&str, f64)]) -> Model {

@@ -1,62 +1,27 @@
 //! Whether what was found on one measurement holds on another one of the same plant.
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
 use crate::ahead::compare::Comparison;
+use crate::ahead::fit;
 use crate::ahead::node::Node;
-use crate::ahead::{Ahead, fit};
-use crate::discover::{DiscoverError, Settings, evaluate, suggest, terms};
-use crate::family::{Fitted, ModelFamily};
-use crate::ladder;
-use crate::report::{Candidate, Rung, SplitError};
-use crate::split::Split;
+use crate::diagnosis;
+use crate::discover::suggest;
+use crate::family::{Ahead, Fitted, ModelFamily};
+use crate::fit::as_given;
+use crate::report::{Candidate, Confirmation, Rung, SplitError};
+use crate::statistics::split::Split;
+use crate::task::{DiscoverError, Settings, terms};
 
 /// Steps of a fit on these recordings.
 const STEPS: usize = 10;
 /// Another view contradicts an effect where its error grows by more than this factor.
 const CONTRADICTION: f64 = 1.05;
 
-/// A rung of a ladder on recordings that had no part in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Confirmation {
-    /// The effect that the rung added; nothing on the base rung.
-    pub added: Option<String>,
-    /// Every effect of the rung.
-    pub effects: Vec<String>,
-    /// Name of the error -> its size with the parameters as they were found, nothing fitted.
-    pub error: BTreeMap<String, f64>,
-    /// Whether the effect, as it was found, removes at least the least gain of the squared error here,
-    /// and no other view contradicts.
-    pub holds: Option<bool>,
-    /// Share of the held-out squared error that the effect removes where the model below it is
-    /// identified anew on these recordings.
-    pub gain: Option<f64>,
-    /// Its p-value there.
-    pub p_value: Option<f64>,
-    /// What it gains in log-likelihood of the prediction errors as it was found, nothing fitted, nats.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub nats: Option<f64>,
-    /// Its place there among the candidates that gain more than chance, from 1.
-    pub place: Option<usize>,
-}
-
-/// A ladder on recordings that had no part in it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Confirmed {
-    /// Names of the recordings.
-    pub recording: String,
-    /// One for each rung.
-    pub rungs: Vec<Confirmation>,
-}
-
 /// Every rung of `ladder`, found on another family of the same terms, on `family`; `settings` are those
 /// that found it.
 ///
 /// # Errors
 /// An effect of the ladder is not among the family's terms.
-pub fn on<F: ModelFamily + ?Sized>(
+pub fn confirm<F: ModelFamily + ?Sized>(
     family: &F,
     ladder: &[Rung],
     settings: &Settings<'_>,
@@ -64,7 +29,7 @@ pub fn on<F: ModelFamily + ?Sized>(
     if let Some(ahead) = family.ahead() {
         return one_ahead(family, &*ahead, ladder, settings);
     }
-    let key = ladder::relative_key(family);
+    let key = diagnosis::relative_key(family);
     let mut all: Vec<Confirmation> = Vec::new();
     for (k, rung) in ladder.iter().enumerate() {
         let mut here = as_found(family, rung)?;
@@ -117,7 +82,7 @@ fn as_found<F: ModelFamily + ?Sized>(
     family: &F,
     rung: &Rung,
 ) -> Result<Confirmation, DiscoverError> {
-    let fit = evaluate(family, model_of(family, rung)?);
+    let fit = as_given(family, model_of(family, rung)?);
     let points = family.target().len();
     let split = Split::new(points, family.blocks());
     let fitted = split.fit(points).iter().filter(|fit| **fit).count() as f64 / points as f64;
@@ -125,7 +90,7 @@ fn as_found<F: ModelFamily + ?Sized>(
     let whole = |error: SplitError| {
         (fitted * error.fit.powi(2) + (1.0 - fitted) * error.validation.powi(2)).sqrt()
     };
-    let errors = ladder::errors(family, &fit, &split).into_iter();
+    let errors = diagnosis::errors(family, &fit, &split).into_iter();
     Ok(Confirmation {
         added: rung.added.clone(),
         effects: rung.effects.clone(),

@@ -1,51 +1,45 @@
 //! Tells what a model lacks.
 //!
-//! A measurement is compared with a model; the residual shows *where* the model fails, a screening of
-//! candidate terms shows *which* one is missing, and a ladder of refits shows what each of them gains
-//! on held-out data. The engine knows nothing of friction or any other subject: it works for every
+//! A measurement is compared with a model; what the model leaves shows *where* it fails, a search among
+//! candidate terms shows *which* one is missing, and a ladder of refits shows what each of them gains on
+//! held-out data. The engine knows nothing of friction or any other subject: it works for every
 //! [`ModelFamily`].
+//!
+//! # A tour
+//!
+//! Arrows point down this list; a room imports rooms below it, never one above.
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | [`discover`], [`suggest`], [`confirm`] | the ways in: search, look once, try on another recording |
+//! | [`ahead`] | what decides where a family predicts one sample ahead: fit, compare, screen, search sets, tell |
+//! | [`climb`] | what decides where a family gives residuals only: screening against placebos, one rung at a time |
+//! | `task` | what is asked: [`Settings`], [`Thresholds`], [`Event`]s for an [`Observer`] |
+//! | [`diagnosis`] | where a model fails and what its residual says: shown to people, decides nothing |
+//! | [`fit`] | least squares of a model on the compared quantity, intervals |
+//! | [`family`] | the seam to a subject: [`ModelFamily`], [`Term`], [`family::Ahead`] |
+//! | [`statistics`] | residuals as numbers: surrogate data, spectra, tests, splits |
+//! | [`measurement`] | [`Recording`] and what is to be known of it before any model |
+//! | [`report`] | result types: a [`Discovery`] and its parts, the JSON contract |
 
 pub mod ahead;
-pub mod autocorrelation;
-pub mod basis;
-mod climb;
-pub mod confirm;
-pub mod data_check;
+pub mod climb;
+mod confirm;
 pub mod diagnosis;
-pub mod discover;
-pub mod evidence;
+mod discover;
 pub mod family;
 pub mod fit;
-pub mod generic;
-pub mod in_time;
-pub mod ladder;
-mod limits;
-pub mod metrics;
-pub mod missing_force;
-pub mod noise;
-pub mod pairs;
-pub mod placebo;
-pub mod quantity;
-pub mod recording;
+pub mod measurement;
 pub mod report;
-pub mod residual_map;
-pub mod residual_tests;
-pub mod screen;
-pub mod search;
-pub mod shapes;
-pub mod spectrum;
-pub mod split;
-pub mod surrogates;
-mod tried;
-pub mod uncertainty;
-pub mod verdict;
-pub mod views;
-pub mod where_it_fails;
+pub mod statistics;
+mod task;
 
-pub use discover::{DiscoverError, Event, Observer, Settings, discover, suggest};
+pub use confirm::confirm;
+pub use discover::{discover, suggest};
 pub use family::{Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term};
-pub use recording::{Channel, Hold, Recording, RecordingError};
+pub use measurement::{Channel, Hold, Recording, RecordingError};
 pub use report::Discovery;
+pub use task::{DiscoverError, Event, Observer, Settings, Thresholds, terms};
 
 /// The examples of the README, run as tests.
 #[cfg(doctest)]

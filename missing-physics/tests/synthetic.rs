@@ -1,12 +1,13 @@
 //! The engine on a family that has nothing to do with friction: smooth functions of one coordinate,
 //! autocorrelated noise.
 
+use missing_physics::climb::pairs;
+use missing_physics::climb::screen::Screening;
 use missing_physics::report::Verdict;
-use missing_physics::screen::Screening;
-use missing_physics::split::Split;
+use missing_physics::statistics::split::Split;
 use missing_physics::{
     Coordinate, Discovery, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Settings, Term,
-    discover, pairs, search,
+    discover, fit,
 };
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -248,7 +249,7 @@ fn an_unknown_effect_is_refused_with_the_names_that_there_are() {
 fn best_pair(family: &Family, seed: u64) -> Option<([usize; 2], f64)> {
     let split = Split::new(POINTS, Vec::new());
     let weights = vec![1.0; POINTS];
-    let fit = search::identify(family, &[0, 1], &weights, seed).fit;
+    let fit = fit::identify(family, &[0, 1], &weights, seed).fit;
     let candidates: Vec<usize> = (2..family.terms.len()).collect();
     let motion = family.motion();
     let screening = Screening {

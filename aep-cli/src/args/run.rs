@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use missing_physics::Settings;
-use missing_physics::ahead::Thresholds;
+use missing_physics::{Settings, Thresholds};
 
 use super::EffectNames;
 use crate::failure::Failure;

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use friction_ident::Model;
 use friction_ident::family::FrictionFamily;
-use missing_physics::ahead::Thresholds;
-use missing_physics::data_check::check;
+use missing_physics::Thresholds;
 use missing_physics::fit::Fit;
-use missing_physics::views::View;
+use missing_physics::measurement::check::check;
+use missing_physics::report::View;
 
 use crate::app::Global;
 use crate::args::{DataArgs, LimitArgs, OutputArgs};
@@ -65,7 +65,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let (views, mut notes) = side_by_side(&family, &args.model, &fits, watch)?;
     discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
     let warnings = output::warnings(&views, &notes);
-    notes.splice(0..0, missing_physics::views::disagreements(&views));
+    notes.splice(0..0, missing_physics::diagnosis::views::disagreements(&views));
     notes.append(&mut discovery.notes);
     let stopped = watch.is_over();
     if stopped && !notes.iter().any(|note| note == STOPPED) {

@@ -7,15 +7,15 @@ use friction_ident::control::{
     self, Compensator, ControlError, Deviation, Measures, Servo, Settings, Trial, paper, robustness,
 };
 use friction_ident::{Axis, Model, Quantity, Reference};
-use missing_physics::quantity::{percent, quantity};
+use missing_physics::measurement::quantity::{percent, quantity};
 use serde_json::json;
 
+use crate::steps;
 use crate::app::Global;
 use crate::args::{LoopArgs, ReferenceArgs};
 use crate::curve_plot::{self, Axes, Curve};
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, heading, written};
-use crate::steps;
 
 /// Simulate PD control with and without friction compensation
 ///

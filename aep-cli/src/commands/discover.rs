@@ -4,12 +4,11 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use aep_studio::words;
-use missing_physics::ahead::Thresholds;
-use missing_physics::confirm::Confirmed;
-use missing_physics::data_check::check;
-use missing_physics::report::Verdict;
-use missing_physics::{Discovery, discover};
+use missing_physics::{Discovery, Thresholds, discover};
+use missing_physics::measurement::check::check;
+use missing_physics::report::{Confirmed, Verdict};
 
+use crate::steps;
 use crate::app::Global;
 use crate::args::{self, EffectNames, MappingArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
@@ -17,7 +16,6 @@ use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
-use crate::steps;
 use crate::stop::Watch;
 
 /// Find out which physical effect a model of the drive lacks
@@ -106,7 +104,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         progress.say("confirming it on the other recordings");
         let other = steps::family(&others.recording, args.bandwidth)?.with_stroke_of(&family);
         steps::same_axes(&family, &other)?;
-        let rungs = missing_physics::confirm::on(&other, &discovery.ladder, &settings)?;
+        let rungs = missing_physics::confirm(&other, &discovery.ladder, &settings)?;
         let found = Confirmed { recording: others.recording.name().to_owned(), rungs };
         confirmed = output::confirmation(&discovery, &found);
         discovery.confirmation = Some(found);

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use friction_ident::Axis;
-use missing_physics::quantity::number;
+use missing_physics::measurement::quantity::number;
 
 use crate::app::Global;
 use crate::args::{known, library};

@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use missing_physics::ahead::Thresholds;
-use missing_physics::data_check::check;
+use missing_physics::Thresholds;
+use missing_physics::measurement::check::check;
 
+use crate::steps;
 use crate::app::Global;
 use crate::args::{DataArgs, LimitArgs, OutputArgs, known};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
-use crate::steps;
 
 /// Add an effect to a model, refit it, and print before and after
 #[derive(clap::Args)]

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use friction_ident::family::FrictionFamily;
-use missing_physics::Recording;
-use missing_physics::ahead::Thresholds;
-use missing_physics::data_check::check;
+use missing_physics::{Recording, Thresholds};
+use missing_physics::measurement::check::check;
 
 use crate::app::Global;
 use crate::args::{Compared, DataArgs, EffectNames, LimitArgs, OutputArgs, TimeArgs};

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use aep_problems::paper::{Claim, Verdict};
 use friction_ident::control::paper::{self, GAIN, Shown};
 use friction_ident::control::{Measures, Trial};
-use missing_physics::quantity::{percent, quantity};
+use missing_physics::measurement::quantity::{percent, quantity};
 
 use super::reproduce::{Conditions, Figure, Made, keep};
 use crate::curve_plot::{self, Axes, Curve};

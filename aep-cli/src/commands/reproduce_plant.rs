@@ -10,7 +10,7 @@ use friction_ident::identify::Interval;
 use friction_ident::paper::{self, KGF, PARAMETERS, POPULATION, SAMPLE_TIME};
 use friction_ident::{Identification, Model, intervals, intervals_over};
 use missing_physics::Recording;
-use missing_physics::quantity::number;
+use missing_physics::measurement::quantity::number;
 
 use super::reproduce::{Conditions, Figure, Made, keep};
 use crate::curve_plot::{self, Axes, Curve};

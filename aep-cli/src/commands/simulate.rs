@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use aep_data::Loaded;
 use friction_ident::{Axis, Input, Model, SimulationError, Start, Trajectory, simulate};
-use missing_physics::quantity::quantity;
 use missing_physics::{Channel, Recording};
+use missing_physics::measurement::quantity::quantity;
 
+use crate::steps;
 use crate::app::Global;
 use crate::args::MappingArgs;
 use crate::failure::Failure;
 use crate::output::{self, written};
-use crate::steps;
 
 /// Simulate a model under a recorded force
 ///

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use aep_studio::words;
-use missing_physics::data_check::check;
 use missing_physics::suggest;
+use missing_physics::measurement::check::check;
 
+use crate::steps;
 use crate::app::Global;
 use crate::args::{DataArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
@@ -13,7 +14,6 @@ use crate::failure::Failure;
 use crate::output::{self, Columns, heading};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
-use crate::steps;
 use crate::stop::Watch;
 
 /// Most effects that one experiment is to tell apart.

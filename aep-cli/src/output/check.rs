@@ -5,8 +5,8 @@ use std::fmt::Write;
 use aep_data::Loaded;
 use anstyle::AnsiColor;
 use missing_physics::Hold;
-use missing_physics::data_check::{DataCheck, Severity};
-use missing_physics::quantity::{percent, quantity};
+use missing_physics::measurement::check::{DataCheck, Severity};
+use missing_physics::measurement::quantity::{percent, quantity};
 
 use super::style::{dim, heading, paint};
 use super::table::{Align, Table};

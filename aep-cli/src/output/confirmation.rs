@@ -4,8 +4,7 @@ use std::fmt::Write;
 
 use aep_studio::words;
 use missing_physics::Discovery;
-use missing_physics::confirm::Confirmed;
-use missing_physics::surrogates::Surrogates;
+use missing_physics::report::{Confirmed, Surrogates};
 
 use super::style::{dim, heading};
 use super::table::{Align, Table};

@@ -4,10 +4,9 @@ use std::fmt::Write;
 
 use aep_studio::words;
 use anstyle::AnsiColor;
-use missing_physics::Discovery;
-use missing_physics::ahead::Thresholds;
-use missing_physics::quantity::{number, percent};
+use missing_physics::measurement::quantity::{number, percent};
 use missing_physics::report::{Candidate, RegimeShare, Rung, SplitError, Verdict, Where};
+use missing_physics::{Discovery, Thresholds};
 
 use crate::args::library;
 

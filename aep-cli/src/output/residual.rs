@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use aep_studio::words;
 use missing_physics::Discovery;
-use missing_physics::diagnosis::Diagnosis;
-use missing_physics::quantity::quantity;
+use missing_physics::measurement::quantity::quantity;
+use missing_physics::report::Diagnosis;
 
 use super::style::dim;
 use super::table::{Align, Table};

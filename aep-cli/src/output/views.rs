@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use missing_physics::quantity::{percent, quantity};
-use missing_physics::views::View;
+use missing_physics::measurement::quantity::{percent, quantity};
+use missing_physics::report::View;
 
 use super::style::dim;
 use super::table::{Align, Table};
@@ -63,7 +63,7 @@ fn numbers(view: &View) -> [String; 6] {
 
 /// What the user should know about the views: warnings of each, each once, and where they disagree.
 pub fn warnings(models: &[(String, Vec<View>)], notes: &[String]) -> String {
-    let mut said: Vec<String> = missing_physics::views::disagreements(models);
+    let mut said: Vec<String> = missing_physics::diagnosis::views::disagreements(models);
     let mut warned: Vec<&str> = Vec::new();
     for view in models.iter().flat_map(|(_, views)| views) {
         // What holds for a view holds for it with the next model, too.

@@ -4,8 +4,8 @@ use aep_core::{Aep, Budget, MetaEp, Method};
 use friction_ident::family::FrictionFamily;
 use friction_ident::identify::{Interval, Refined, all_free};
 use friction_ident::{Free, Identification, Model, Quantity, intervals_over};
-use missing_physics::autocorrelation::interval;
-use missing_physics::quantity::{number, quantity};
+use missing_physics::measurement::quantity::{number, quantity};
+use missing_physics::statistics::autocorrelation::interval;
 use missing_physics::{ModelFamily, Recording};
 
 use super::{identify, method, model, rung};

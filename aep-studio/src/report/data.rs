@@ -1,7 +1,7 @@
 //! What was seen in the data before any model.
 
-use missing_physics::data_check::{ChannelCheck, DataCheck, Severity};
-use missing_physics::quantity::{percent, quantity};
+use missing_physics::measurement::check::{ChannelCheck, DataCheck, Severity};
+use missing_physics::measurement::quantity::{percent, quantity};
 
 use crate::html::{self, concat, escape, table};
 use crate::report::Source;

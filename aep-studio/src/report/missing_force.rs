@@ -1,10 +1,8 @@
 //! The force that the models lack: over time, and along the coordinates of the state.
 
 use missing_physics::Discovery;
-use missing_physics::missing_force::MissingForce;
-use missing_physics::quantity::percent;
-use missing_physics::report::{Curve, Plot};
-use missing_physics::residual_map::ResidualMap;
+use missing_physics::measurement::quantity::percent;
+use missing_physics::report::{Curve, MissingForce, Plot, ResidualMap};
 
 use super::residual::{band, curve};
 use crate::html::{concat, escape};

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use missing_physics::Discovery;
-use missing_physics::quantity::number;
+use missing_physics::measurement::quantity::number;
 use missing_physics::report::{Estimate, Rung};
 
 use crate::html::{self, escape, table};

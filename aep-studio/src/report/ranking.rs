@@ -1,7 +1,7 @@
 //! The candidates of every rung, best first.
 
 use missing_physics::Discovery;
-use missing_physics::quantity::percent;
+use missing_physics::measurement::quantity::percent;
 use missing_physics::report::Candidate;
 
 use crate::html::{self, bar, escape, table};

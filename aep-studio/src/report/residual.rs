@@ -2,10 +2,8 @@
 //! periodic.
 
 use missing_physics::Discovery;
-use missing_physics::diagnosis::Diagnosis;
-use missing_physics::quantity::quantity;
-use missing_physics::report::{Curve, Plot};
-use missing_physics::residual_map::ResidualMap;
+use missing_physics::measurement::quantity::quantity;
+use missing_physics::report::{Curve, Diagnosis, Plot, ResidualMap};
 
 use crate::html::{self, concat, escape, table};
 use crate::plot::{self, Band};

@@ -1,8 +1,8 @@
 //! The error in several views side by side.
 
 use missing_physics::Discovery;
-use missing_physics::quantity::{percent, quantity};
-use missing_physics::views::View;
+use missing_physics::measurement::quantity::{percent, quantity};
+use missing_physics::report::View;
 
 use crate::html::{self, concat, escape, table};
 

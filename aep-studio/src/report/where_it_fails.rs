@@ -1,7 +1,7 @@
 //! Where the model fails: shares of the error by regime, and what it depends on.
 
 use missing_physics::Discovery;
-use missing_physics::quantity::percent;
+use missing_physics::measurement::quantity::percent;
 use missing_physics::report::{RegimeShare, Where};
 
 use super::missing_force;

@@ -1,10 +1,8 @@
 //! The record of what was compared, in plain words.
 
-use missing_physics::Discovery;
-use missing_physics::ahead::Thresholds;
-use missing_physics::ahead::decision::{Decision, Outcome};
-use missing_physics::quantity::percent;
-use missing_physics::report::Rung;
+use missing_physics::measurement::quantity::percent;
+use missing_physics::report::{Decision, Outcome, Rung};
+use missing_physics::{Discovery, Thresholds};
 
 use super::{nats, times};
 

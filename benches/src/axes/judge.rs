@@ -1,10 +1,9 @@
 //! The one place where a recording is handed to the library, and where its answer is judged.
 
 use friction_ident::family::{FrictionFamily, Options};
-use missing_physics::ahead::Thresholds;
-use missing_physics::data_check::cut_at_gaps;
+use missing_physics::measurement::check::cut_at_gaps;
 use missing_physics::report::Verdict;
-use missing_physics::{Channel, Discovery, Hold, Recording, Settings, discover};
+use missing_physics::{Channel, Discovery, Hold, Recording, Settings, Thresholds, discover};
 
 use super::case::{Case, Wanted};
 use super::level::Recorded;

@@ -1,6 +1,6 @@
 //! What half and one and a half times each threshold do to hits, extras and false alarms.
 
-use missing_physics::ahead::Thresholds;
+use missing_physics::Thresholds;
 
 use super::case::Wanted;
 use super::judge::{Answer, Outcome};

@@ -15,7 +15,7 @@ use benches::axes::level::{Level, Recorded, recorded};
 use benches::axes::{score, select, sweep, write};
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
-use missing_physics::ahead::Thresholds;
+use missing_physics::Thresholds;
 use rayon::prelude::*;
 
 #[derive(Parser)]

@@ -1,9 +1,8 @@
 //! One cell of the matrix: a hidden effect, a level, a seed, and what the discovery says of it.
 
 use friction_ident::family::{FrictionFamily, Options};
-use missing_physics::discover::terms;
 use missing_physics::report::Verdict;
-use missing_physics::{Discovery, ModelFamily, Settings, discover, search};
+use missing_physics::{Discovery, ModelFamily, Settings, discover, fit, terms};
 
 use super::hidden::{Case, Hidden};
 use super::motion::Excitation;
@@ -137,10 +136,11 @@ fn names_coordinate(found: &Discovery, coordinates: &[&str]) -> bool {
 fn ratio(family: &FrictionFamily, found: &Discovery, case: &Case) -> Option<f64> {
     let truth = case.answers.iter().map(|name| (*name).to_owned());
     let full = terms(family, &base(case).into_iter().chain(truth).collect::<Vec<_>>()).ok()?;
-    let split = missing_physics::split::Split::new(family.target().len(), family.blocks());
+    let split =
+        missing_physics::statistics::split::Split::new(family.target().len(), family.blocks());
     let weights: Vec<f64> =
         split.fit(family.target().len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
-    let truth = search::identify(family, &full, &weights, 1).fit;
+    let truth = fit::identify(family, &full, &weights, 1).fit;
     let error = found.ladder.last()?.metrics.as_ref()?.validation.rms;
     Some(error / split.rms(&truth.residual).validation)
 }

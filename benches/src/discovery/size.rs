@@ -1,8 +1,7 @@
 //! How large a hidden effect is made: relative to what a force estimate leaves to noise.
 
 use friction_ident::family::{FrictionFamily, Options};
-use missing_physics::discover::terms;
-use missing_physics::{ModelFamily, search};
+use missing_physics::{ModelFamily, fit, terms};
 
 use super::hidden::Hidden;
 use super::motion::Excitation;
@@ -74,7 +73,7 @@ fn top(table: &Table, excitation: Excitation, base: &[String]) -> Option<f64> {
     let family = FrictionFamily::new(&table.record(excitation).ok()?, &Options::default()).ok()?;
     let base = terms(&family, base).ok()?;
     let weights = vec![1.0; family.target().len()];
-    let mut squares: Vec<f64> = search::identify(&family, &base, &weights, 1)
+    let mut squares: Vec<f64> = fit::identify(&family, &base, &weights, 1)
         .fit
         .residual
         .iter()

@@ -1,11 +1,11 @@
 //! What varies freely, with time or along the stroke: no effect, but what an effect must be told from.
 //!
 //! A friction level or a force that may be anything at every moment or place explains nothing. Where it predicts as
-//! well as effects do that were found, the recording does not show those effects: see [`missing_physics::ahead::Rival`].
+//! well as effects do that were found, the recording does not show those effects: see [`missing_physics::family::Rival`].
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
-use missing_physics::quantity::quantity;
+use missing_physics::measurement::quantity::quantity;
 
 /// Knots over the recording or the stroke; straight between them, 0 at the first one, so that nothing competes with
 /// `coulomb` or `offset`.

@@ -3,8 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use aep_core::Scale;
-use missing_physics::ahead::{Ahead, Columns, Rival, Trial, trials};
-use missing_physics::missing_force::Series;
+use missing_physics::family::{Ahead, Columns, Rival, Series, Trial, trials};
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use missing_physics::metrics::{Metrics, SplitMetrics, Sums};
-use missing_physics::split::Split;
-use missing_physics::views::View;
-use missing_physics::{Coordinate, Fitted, ModelFamily, noise};
+use missing_physics::diagnosis::noise;
+use missing_physics::report::{Metrics, SplitMetrics, View};
+use missing_physics::statistics::metrics::Sums;
+use missing_physics::statistics::split::Split;
+use missing_physics::{Coordinate, Fitted, ModelFamily};
 
 use super::FrictionFamily;
 use super::views::held_out;

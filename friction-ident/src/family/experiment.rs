@@ -6,13 +6,13 @@
 
 mod motions;
 
-use missing_physics::basis::dot;
-use missing_physics::discover::terms;
+use missing_physics::climb::screen::{self, Screening};
+use missing_physics::diagnosis::noise;
 use missing_physics::fit::{self, Fit};
-use missing_physics::screen::weights;
-use missing_physics::screen::{self, Screening};
-use missing_physics::split::Split;
-use missing_physics::{DiscoverError, Fitted, Recording, noise, search};
+use missing_physics::statistics::basis::dot;
+use missing_physics::statistics::split::Split;
+use missing_physics::statistics::weights;
+use missing_physics::{DiscoverError, Fitted, Recording, terms};
 use rayon::prelude::*;
 
 use self::motions::{Motion, Room, motions};
@@ -164,7 +164,7 @@ impl FrictionFamily {
         let split = Split::new(self.target.len(), self.blocks.clone());
         let fitted: Vec<f64> =
             split.fit(self.target.len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
-        let fit = search::identify(self, &base, &fitted, seed).fit;
+        let fit = fit::identify(self, &base, &fitted, seed).fit;
         let weights = weights(&self.doubt, &fit.residual);
         let screening = Screening {
             candidates: &[],
@@ -181,7 +181,7 @@ impl FrictionFamily {
                 let term = all[all.len() - 1];
                 let start = screen::best_values(self, &fit, &screening, term).map_or_else(
                     || fit.model.with(term, &starts(self, term)),
-                    |values| search::shaped(self, &fit, term, &values, &fitted, seed),
+                    |values| fit::shaped(self, &fit, term, &values, &fitted, seed),
                 );
                 Ok(fit::refine(self, start, &fitted))
             })

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use missing_physics::basis::dot;
+use missing_physics::statistics::basis::dot;
 
 /// Second-order sections of the filter.
 const SECTIONS: usize = 2;

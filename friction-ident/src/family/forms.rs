@@ -1,7 +1,7 @@
 //! Forms of effects one sample ahead: which one is more flexible, and where it begins.
 
 use missing_physics::Fitted;
-use missing_physics::ahead::Trial;
+use missing_physics::family::Trial;
 
 use super::FrictionFamily;
 use crate::effects::AsFound;

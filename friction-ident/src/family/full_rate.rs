@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use missing_physics::Coordinate;
-use missing_physics::spectrum::FullRate;
+use missing_physics::family::FullRate;
 
 use super::FrictionFamily;
 use crate::axis::Quantity;

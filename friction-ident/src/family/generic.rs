@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use missing_physics::Coordinate;
-use missing_physics::generic::Generic;
-use missing_physics::in_time::Structure;
+use missing_physics::family::Generic;
+use missing_physics::statistics::in_time::Structure;
 
 /// Bumps that make up a profile over the whole range.
 const BUMPS: usize = 8;

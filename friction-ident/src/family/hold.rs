@@ -3,8 +3,9 @@
 //! A command that is held from sample to sample and read as if it were sampled shows half a sample of delay, which
 //! is no physics of the drive.
 
-use missing_physics::ahead::{fit::Fitter, statistics};
-use missing_physics::{Hold, ModelFamily, Recording, discover, search};
+use missing_physics::ahead::fit::Fitter;
+use missing_physics::ahead::statistics;
+use missing_physics::{Hold, ModelFamily, Recording, fit, terms};
 
 use super::ahead::View;
 use super::{FrictionFamily, Options, PreparationError};
@@ -77,9 +78,9 @@ fn likelihood(family: &FrictionFamily) -> Option<f64> {
     let view = View { family, ahead };
     let known = |name: &&&str| family.terms().iter().any(|term| term.name == ***name);
     let names: Vec<String> = SIMPLE.iter().filter(known).map(|name| (*name).to_owned()).collect();
-    let terms = discover::terms(family, &names).ok()?;
+    let terms = terms(family, &names).ok()?;
     let everywhere = vec![1.0; family.target().len()];
-    let mut model = search::identify(family, &terms, &everywhere, 1).fit.model;
+    let mut model = fit::identify(family, &terms, &everywhere, 1).fit.model;
     let mut best: Option<f64> = None;
     // From much process noise to little: the valley narrows.
     for setting in (0..ahead.predictor.settings() / 2).rev() {

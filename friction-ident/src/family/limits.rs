@@ -214,7 +214,7 @@ pub fn periods(prepared: &Prepared, stroke: (f64, f64), term: &Term) -> Vec<Vec<
 /// the frequencies lie closer than other shapes.
 pub fn resonances(term: &Term) -> Vec<Vec<f64>> {
     let frequency = term.parameters.iter().find(|parameter| parameter.name == "f");
-    let line = frequency.map(|f| missing_physics::shapes::spread(f, RESONANCES));
+    let line = frequency.map(|f| missing_physics::family::shapes::spread(f, RESONANCES));
     let both = |f: f64| DAMPING.iter().map(move |zeta| vec![f, *zeta]);
     line.unwrap_or_default().into_iter().flat_map(both).collect()
 }
@@ -227,8 +227,8 @@ const BRISTLES: usize = 3;
 /// some thousand trials.
 pub fn free_contacts(term: &Term) -> Vec<Vec<f64>> {
     let trials = |parameter: &Parameter| match parameter.name.as_str() {
-        "d" => missing_physics::shapes::spread(parameter, DISTANCES),
-        "sigma_1" => missing_physics::shapes::spread(parameter, BRISTLES),
+        "d" => missing_physics::family::shapes::spread(parameter, DISTANCES),
+        "sigma_1" => missing_physics::family::shapes::spread(parameter, BRISTLES),
         _ => vec![0.0],
     };
     term.parameters.iter().fold(vec![Vec::new()], |points, parameter| {

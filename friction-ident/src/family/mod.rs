@@ -24,12 +24,10 @@ mod words;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use missing_physics::ahead::Ahead;
-use missing_physics::basis::{dot, gram, solve};
-use missing_physics::generic::Generic;
+use missing_physics::family::{Ahead, FullRate, Generic};
 use missing_physics::report::{Plot, SplitError};
-use missing_physics::spectrum::FullRate;
-use missing_physics::split::Split;
+use missing_physics::statistics::basis::{dot, gram, solve};
+use missing_physics::statistics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
 
 use rayon::prelude::*;
@@ -344,7 +342,7 @@ impl ModelFamily for FrictionFamily {
         if self.terms[term].name == "presliding:free" {
             return limits::free_contacts(&self.terms[term]);
         }
-        missing_physics::shapes::grid(&self.terms[term])
+        missing_physics::family::shapes::grid(&self.terms[term])
     }
 
     fn columns(
@@ -359,7 +357,7 @@ impl ModelFamily for FrictionFamily {
         }
         let simple = model.terms.iter().skip(1).chain([&term]).all(|&term| self.is_simple(term));
         let about = &self.terms[term];
-        let values = missing_physics::shapes::assemble(about, shape, &[]);
+        let values = missing_physics::family::shapes::assemble(about, shape, &[]);
         let alone = Fitted { terms: vec![0], values: vec![1.0] }.with(term, &values);
         // Without contact and drive in play a term's columns do not depend on the rest.
         match self.model(&alone) {
@@ -373,7 +371,7 @@ impl ModelFamily for FrictionFamily {
                     .map(|(_, column)| self.prepared.compare(column))
                     .collect()
             }
-            _ => missing_physics::shapes::columns(self, model, prediction, term, shape),
+            _ => missing_physics::family::columns(self, model, prediction, term, shape),
         }
     }
 

@@ -1,8 +1,7 @@
 //! How often a recording like this one gets a name that is not there.
 
 use missing_physics::ahead::fit;
-use missing_physics::report::Verdict;
-use missing_physics::surrogates::Surrogates;
+use missing_physics::report::{Surrogates, Verdict};
 use missing_physics::{Channel, DiscoverError, Recording, Settings, discover};
 
 use super::ahead::View;

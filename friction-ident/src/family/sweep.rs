@@ -120,7 +120,7 @@ impl FrictionFamily {
 #[cfg(test)]
 mod tests {
     use missing_physics::ModelFamily;
-    use missing_physics::basis::dot;
+    use missing_physics::statistics::basis::dot;
 
     use super::super::Options;
     use super::*;
@@ -136,7 +136,7 @@ mod tests {
         for period in [3e-3, 8e-3] {
             let quick = family.encoders(&model, &[vec![period]]).swap_remove(0);
             let slow =
-                missing_physics::shapes::columns(&family, &model, &prediction, term, &[period]);
+                missing_physics::family::columns(&family, &model, &prediction, term, &[period]);
             for (quick, slow) in quick.iter().zip(&slow) {
                 let left: Vec<f64> = quick.iter().zip(slow).map(|(a, b)| a - b).collect();
                 let share = (dot(&left, &left) / dot(slow, slow)).sqrt();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use missing_physics::Recording;
 use missing_physics::report::SplitError;
-use missing_physics::split::Split;
+use missing_physics::statistics::split::Split;
 
 use crate::axis::Axis;
 use crate::model::Model;

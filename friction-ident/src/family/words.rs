@@ -1,7 +1,7 @@
 //! Values and experiments in the words of an engineer.
 
 use missing_physics::Term;
-use missing_physics::quantity::quantity;
+use missing_physics::measurement::quantity::quantity;
 
 /// A term with its values.
 pub fn describe(term: &Term, values: &[f64]) -> String {

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use missing_physics::ahead::node::CUT;
 use missing_physics::ahead::statistics::{loss, rms};
-use missing_physics::missing_force::Series;
+use missing_physics::family::Series;
 use rayon::prelude::*;
 
 use super::Predictor;

@@ -2,8 +2,8 @@
 
 use missing_physics::Recording;
 use missing_physics::ahead::statistics::spread;
-use missing_physics::basis::{dot, gram, solve};
-use missing_physics::data_check::count_of;
+use missing_physics::measurement::check::count_of;
+use missing_physics::statistics::basis::{dot, gram, solve};
 
 /// Sum of the squares of the binomial coefficients of a fourth difference.
 const FOURTH: f64 = 70.0;

@@ -1,7 +1,7 @@
 //! Samples that repeat the one before while the axis moves: the recorder dropped them, or reads slower than it writes.
 
 use missing_physics::Recording;
-use missing_physics::data_check::count_of;
+use missing_physics::measurement::check::count_of;
 
 /// The axis moves where the samples around one lie this many counts apart, and the two before it half of that.
 const MOVING: f64 = 8.0;

@@ -13,15 +13,14 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::compare::{Comparison, Difference};
-use super::decision::{Decision, Outcome};
 use super::fit::{self, Fitter};
 use super::found::{Found, Ranked};
 use super::node::Node;
 use super::screen::{Promise, Screened, screen};
-use super::thresholds::Thresholds;
 use super::{Ahead, scales};
-use crate::discover::Event;
 use crate::family::{Fitted, ModelFamily, Role};
+use crate::report::{Decision, Outcome};
+use crate::task::{Event, Thresholds};
 
 /// Steps of a first fit, of a refit elsewhere, and of the last one.
 const STEPS: (usize, usize, usize) = (6, 6, 12);

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
-use crate::basis::{dot, solve};
+use crate::statistics::basis::{dot, solve};
 
 /// Shifts that are looked at, evenly spread: the resolution of a p-value is 1 over this.
 pub const SHIFTS: usize = 999;
@@ -120,7 +120,7 @@ mod tests {
             matrix: vec![vec![dot(c, c)]],
             positive: false,
         };
-        crate::basis::add_scaled(&mut left, -0.3, &there);
+        crate::statistics::basis::add_scaled(&mut left, -0.3, &there);
         let trials = [columns(&there), columns(&other)];
         let chance = Chance::of(&left, &trials, 2);
         let gain = |c: &[f64]| 0.5 * dot(c, &left).powi(2) / dot(c, c) - 1.0;

@@ -8,8 +8,8 @@
 use super::fit::Normal;
 use super::node::Node;
 use super::{Ahead, scales, statistics};
-use crate::basis::solve;
 use crate::family::{Fitted, ModelFamily, Parameter, Role, Term};
+use crate::statistics::basis::solve;
 
 /// Folds of interleaved pieces.
 const FOLDS: usize = 5;
@@ -123,9 +123,9 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
             let mut moment = vec![0.0; moved.len()];
             for part in parts.iter().enumerate().filter(|(fold, _)| *fold != held).map(|(_, p)| p) {
                 for (row, other) in matrix.iter_mut().zip(&part.matrix) {
-                    crate::basis::add_scaled(row, 1.0, other);
+                    crate::statistics::basis::add_scaled(row, 1.0, other);
                 }
-                crate::basis::add_scaled(&mut moment, 1.0, &part.moment);
+                crate::statistics::basis::add_scaled(&mut moment, 1.0, &part.moment);
             }
             for (k, row) in matrix.iter_mut().enumerate() {
                 let scale = moved[k].scale();

@@ -4,8 +4,8 @@
 
 use super::node::Node;
 use super::{Ahead, scales, statistics};
-use crate::basis::{dot, solve};
 use crate::family::{Fitted, ModelFamily};
+use crate::statistics::basis::{dot, solve};
 
 /// Dampings that are tried at once, as multiples of the one that led down last.
 const DAMPINGS: [f64; 5] = [0.03, 0.6, 12.0, 300.0, 3e4];
@@ -147,10 +147,10 @@ impl Normal {
         let weight: Vec<f64> =
             errors.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
         let columns: Vec<Vec<f64>> =
-            jacobian.iter().map(|c| crate::basis::weighed(c, &weight)).collect();
-        let target = crate::basis::weighed(errors, &weight);
+            jacobian.iter().map(|c| crate::statistics::basis::weighed(c, &weight)).collect();
+        let target = crate::statistics::basis::weighed(errors, &weight);
         Self {
-            matrix: crate::basis::gram(&columns),
+            matrix: crate::statistics::basis::gram(&columns),
             moment: columns.iter().map(|c| -dot(c, &target)).collect(),
         }
     }
@@ -203,7 +203,7 @@ mod tests {
             moved.iter().zip(&node.errors).map(|(e, old)| e - old).collect::<Vec<f64>>()
         };
         let columns = [unit(0), unit(1)];
-        let matrix = crate::basis::gram(&columns);
+        let matrix = crate::statistics::basis::gram(&columns);
         let moment: Vec<f64> = columns.iter().map(|c| -dot(c, &node.errors)).collect();
         for (k, step) in solve(&matrix, &moment, &[0, 1]).iter().enumerate() {
             let deviation = NOISE / matrix[k][k].sqrt();

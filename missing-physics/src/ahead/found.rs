@@ -4,13 +4,13 @@ use rayon::prelude::*;
 
 use super::chance::Chance;
 use super::compare::{Comparison, Difference};
-use super::decision::Decision;
 use super::fit::{self, Fitter};
 use super::node::Node;
 use super::screen::Promise;
-use super::thresholds::Thresholds;
 use super::{Ahead, local};
 use crate::family::{Fitted, ModelFamily};
+use crate::report::Decision;
+use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
 const IN_FULL: usize = 8;

@@ -3,8 +3,8 @@
 
 use super::Ahead;
 use super::node::Node;
-use crate::missing_force::Series;
-use crate::quantity::quantity;
+use crate::family::Series;
+use crate::measurement::quantity::quantity;
 
 /// Bins of equal count along time and each coordinate.
 const BINS: usize = 40;

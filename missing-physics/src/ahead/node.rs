@@ -3,8 +3,7 @@
 use std::sync::OnceLock;
 
 use super::{Ahead, scales, statistics};
-use crate::family::{Fitted, ModelFamily};
-use crate::missing_force::Series;
+use crate::family::{Fitted, ModelFamily, Series};
 
 /// A cut for robust squares: those beyond this many times their mean count as that.
 pub const CUT: f64 = 16.0;

@@ -8,26 +8,24 @@ use std::time::Instant;
 
 use aep_core::Scale;
 
-use super::Ahead;
 use super::beam::{Climb, Search, Tell};
 use super::compare::Difference;
-use super::decision::Decision;
 use super::fit::Fitter;
 use super::found::{Found, Ranked};
 use super::node::Node;
-use super::thresholds::Thresholds;
-use super::{reading, scales};
-use crate::discover::{Event, Observer, Settings};
+use super::{Ahead, reading, scales};
+use crate::diagnosis::where_it_fails::{self, View};
+use crate::diagnosis::{self, generic, noise};
 use crate::family::{Fitted, ModelFamily};
-use crate::fit::{self, Fit};
-use crate::metrics::SplitMetrics;
-use crate::missing_force::MissingForce;
-use crate::quantity::quantity;
-use crate::report::{Ambiguity, Budget, Candidate, Discovery, RegimeShare, Rung, Verdict};
-use crate::screen::weights;
-use crate::split::Split;
-use crate::where_it_fails::{self, View};
-use crate::{diagnosis, ladder, noise, search, uncertainty};
+use crate::fit::{self, Fit, uncertainty};
+use crate::measurement::quantity::quantity;
+use crate::report::{
+    Ambiguity, Budget, Candidate, Decision, Discovery, MissingForce, RegimeShare, Rung,
+    SplitMetrics, Verdict,
+};
+use crate::statistics::split::Split;
+use crate::statistics::weights;
+use crate::task::{Event, Observer, Settings, Thresholds};
 
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 pub fn discover<F: ModelFamily + ?Sized>(
@@ -103,7 +101,7 @@ impl Run<'_> {
             search.base_near(near.clone())
         } else {
             let everywhere = vec![1.0; family.target().len()];
-            let start = search::identify(family, base, &everywhere, self.settings.seed);
+            let start = fit::identify(family, base, &everywhere, self.settings.seed);
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
             search.base(start.fit.model)
         };
@@ -244,7 +242,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let place = places.iter().find(|place| place.p_value <= STRUCTURE)?;
         let named = |c: &&crate::family::Coordinate| c.name == place.coordinate;
         let coordinate = self.family.coordinates().iter().find(named)?;
-        self.family.generic_term(coordinate, &crate::generic::shape(coordinate, residual))
+        self.family.generic_term(coordinate, &generic::shape(coordinate, residual))
     }
 
     fn names(&self, terms: &[usize]) -> Vec<String> {
@@ -323,7 +321,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                 &self.as_prediction(node),
                 &vec![1.0; node.errors.len()],
             ),
-            error: ladder::errors(self.family, fit, split),
+            error: diagnosis::errors(self.family, fit, split),
             p_value: k.and_then(|k| self.found.p_values.get(k).copied()).map(|p| {
                 // A gain that is no number is none.
                 if gain.is_some_and(|gain| gain.nats.is_nan()) { 1.0 } else { p }
@@ -379,7 +377,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let mut limits = BTreeMap::new();
         for promise in &self.found.last_screening {
             let term = &self.family.terms()[promise.term];
-            let amplitude = crate::shapes::amplitudes(term).first().copied();
+            let amplitude = crate::family::shapes::amplitudes(term).first().copied();
             let (Some(amplitude), Some(leverage)) = (amplitude, promise.leverage) else { continue };
             if leverage <= 0.0 || self.family.form_of(promise.term).is_some() {
                 continue;
@@ -413,7 +411,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         places: &[crate::report::Where],
     ) -> String {
         let name = self.family.quantity().name;
-        let key = ladder::relative_key(self.family);
+        let key = diagnosis::relative_key(self.family);
         let relative = |rung: Option<&Rung>| {
             rung.and_then(|rung| rung.error.get(&key)).map_or(0.0, |e| 100.0 * e.validation)
         };
@@ -498,7 +496,7 @@ fn finite(decision: &Decision) -> Decision {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ahead::decision::Outcome;
+    use crate::report::Outcome;
 
     #[test]
     fn numbers_that_are_none_do_not_reach_a_file() {

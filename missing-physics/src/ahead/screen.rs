@@ -3,8 +3,8 @@
 use super::chance::{Chance, Changed};
 use super::node::Node;
 use super::{Ahead, Trial, fit, statistics};
-use crate::basis::{Basis, constrained, dot, gram, weighed};
 use crate::family::{Fitted, ModelFamily};
+use crate::statistics::basis::{Basis, constrained, dot, gram, weighed};
 use rayon::prelude::*;
 
 /// A change is cut off at this many scales: far from the model the first order says nothing.

@@ -49,10 +49,10 @@ pub fn correlation(errors: &[f64]) -> f64 {
         errors.iter().map(|e| e.max(-6.0 * deviation).min(6.0 * deviation)).collect();
     let mean = cut.iter().sum::<f64>() / count;
     let z: Vec<f64> = cut.iter().map(|e| e - mean).collect();
-    let square = crate::basis::dot(&z, &z);
+    let square = crate::statistics::basis::dot(&z, &z);
     let mut factor = 1.0;
     for lag in 1..LAGS.min(z.len()) {
-        let r = crate::basis::dot(&z[..z.len() - lag], &z[lag..]) / square;
+        let r = crate::statistics::basis::dot(&z[..z.len() - lag], &z[lag..]) / square;
         // Not a number counts as nothing.
         if r.is_nan() || r < NEGLIGIBLE {
             break;

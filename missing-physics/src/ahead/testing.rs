@@ -10,9 +10,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{Ahead, Rival, Trial, trials};
 use crate::family::{
-    Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term as About,
+    Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Series, Term as About,
 };
-use crate::missing_force::Series;
 
 /// Samples and their distance, s.
 pub const SAMPLES: usize = 2000;

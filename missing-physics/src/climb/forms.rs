@@ -1,10 +1,11 @@
 //! Forms of an effect: its main one, or another that describes the data clearly better.
 
 use super::Search;
+use crate::climb::screen::{self, Screened};
+use crate::climb::tried::{Tried, square};
 use crate::family::ModelFamily;
 use crate::fit;
-use crate::screen::{self, Screened, weights};
-use crate::tried::{Tried, square};
+use crate::statistics::weights;
 
 /// Another form of an effect is taken where it leaves at most this share of the main form's squared
 /// error.

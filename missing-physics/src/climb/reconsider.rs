@@ -2,11 +2,12 @@
 //! every effect is compared once more with those that were tried in its place.
 
 use super::Search;
-use crate::discover::Event;
+use crate::climb::screen;
+use crate::climb::tried::{Tried, as_good, square};
 use crate::family::ModelFamily;
 use crate::fit::{self, Fit};
-use crate::screen::{self, weights};
-use crate::tried::{Tried, as_good, square};
+use crate::statistics::weights;
+use crate::task::Event;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// Exchanges one effect for another that leaves clearly less in its place, and says whether it did.

@@ -3,13 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::Search;
+use super::grounds::CONTRADICTION;
 use crate::family::ModelFamily;
 use crate::fit::Fit;
 use crate::report::SplitError;
-
-/// Another view contradicts an effect where its error grows by this factor on held-out data and on
-/// fitted data as well: one of them alone is a matter of a few windows.
-pub(crate) const CONTRADICTION: f64 = 1.05;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// Whether no other view of the error contradicts: what really acts on the plant helps

@@ -1,5 +1,6 @@
 use missing_physics::Recording;
-use missing_physics::views::{View, disagreements};
+use missing_physics::diagnosis::views::disagreements;
+use missing_physics::report::View;
 
 use super::*;
 use crate::axis::Axis;

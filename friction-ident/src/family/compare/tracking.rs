@@ -3,10 +3,10 @@
 //! The controller is taken from the recording: the recorded force as a linear function of position error,
 //! velocities and acceleration of the reference. Where that describes the force, the loop is simulated.
 
-use missing_physics::basis::{dot, gram, solve};
-use missing_physics::quantity::quantity;
-use missing_physics::split::Split;
-use missing_physics::views::View;
+use missing_physics::measurement::quantity::quantity;
+use missing_physics::report::View;
+use missing_physics::statistics::basis::{dot, gram, solve};
+use missing_physics::statistics::split::Split;
 
 use crate::axis::Quantity;
 use crate::closed_loop::{Controller, Sample, Setup, closed_loop};

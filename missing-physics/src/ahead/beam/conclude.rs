@@ -2,11 +2,11 @@
 
 use super::{Climb, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
-use crate::ahead::decision::Outcome;
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
 use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
+use crate::report::Outcome;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The best set, of the smallest size that is needed.

@@ -5,12 +5,11 @@
 //! beside it, and so does an effect that is one shape of it (a drift) where it predicts as well.
 
 use super::{Climb, STEPS, Search, negative};
-use crate::ahead::Rival;
 use crate::ahead::compare::Difference;
-use crate::ahead::decision::Outcome;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
-use crate::family::{Fitted, ModelFamily};
+use crate::family::{Fitted, ModelFamily, Rival};
+use crate::report::Outcome;
 
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
 const PROMISED: f64 = 0.5;

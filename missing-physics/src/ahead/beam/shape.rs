@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::{FORM, LOWER, RESCANS, STEPS, Search, TRIED, negative};
-use crate::ahead::decision::Outcome;
 use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
 use crate::ahead::screen::{Promise, screen};
 use crate::family::{Fitted, ModelFamily};
+use crate::report::Outcome;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// A candidate fitted from the best of its starts; nothing where time ran out.

@@ -1,0 +1,204 @@
+//! What the data say in the end, and how sure that is.
+
+use std::fmt::Write;
+
+use crate::climb::grounds::{CONTRADICTION, Grounds};
+use crate::climb::ladder::Ladder;
+use crate::climb::limits::limits;
+use crate::diagnosis::{self, generic, noise, where_it_fails};
+use crate::family::ModelFamily;
+use crate::fit::Fit;
+use crate::report::{Discovery, Rung, SplitError, Verdict, Where};
+use crate::statistics::split::Split;
+
+/// A residual that depends on a coordinate with at most this p-value may be structure.
+const STRUCTURE: f64 = 0.005;
+/// It is, where its share of the squared error, times the share of that which is not noise, is at least
+/// this. Along time the floor does not count: what changes with time is part of it.
+const SHARE: f64 = 0.08;
+/// Effects are only named where they remove at least this share of what is not noise, or
+/// leave no structure.
+const MOST: f64 = 0.5;
+
+/// Where the held-out blocks err by this factor more than the fitted ones, something acts there that hardly
+/// acts in the others.
+const UNEVEN: f64 = 2.0;
+
+/// The place at which structure stands out of the noise, if any.
+fn structure<'a, F: ModelFamily + ?Sized>(
+    family: &F,
+    places: &'a [Where],
+    left: f64,
+    floor: f64,
+) -> Option<&'a Where> {
+    let is_time = |place: &Where| {
+        let named = family.coordinates().iter().find(|c| c.name == place.coordinate);
+        named.is_some_and(where_it_fails::only_grows)
+    };
+    let above = 1.0 - (floor / left).powi(2).min(1.0);
+    places.iter().find(|place| {
+        let above = if is_time(place) { 1.0 } else { above };
+        place.p_value <= STRUCTURE && place.share * above >= SHARE
+    })
+}
+
+/// Whether what has been added removes little of what is not noise and leaves structure: then the nearest
+/// effects of the library are not the cause.
+pub fn explains_little<F: ModelFamily + ?Sized>(
+    family: &F,
+    split: &Split,
+    evidence: &Grounds<'_>,
+) -> bool {
+    let floor = noise::floor_of(family, &evidence.last.residual);
+    let rms = |fit: &Fit| split.rms(&fit.residual).validation;
+    let (before, left) = (rms(evidence.base), rms(evidence.last));
+    let excess = |rms: f64| (rms * rms - floor * floor).max(0.0);
+    structure(family, &evidence.where_last, left, floor).is_some()
+        && excess(left) > (1.0 - MOST) * excess(before)
+}
+
+/// Effects with which another view than that of `quantity` grows, on fitted and held-out data alike, though
+/// the error of `quantity` fell by more.
+fn contradictions(rungs: &[Rung], quantity: &str) -> Vec<String> {
+    let mut said = Vec::new();
+    for pair in rungs.windows(2) {
+        let Some(added) = &pair[1].added else { continue };
+        for (key, after) in pair[1].error.iter().filter(|(key, _)| !key.starts_with(quantity)) {
+            let grown = |before: &SplitError| {
+                after.fit > CONTRADICTION * before.fit
+                    && after.validation > CONTRADICTION * before.validation
+            };
+            let Some(before) = pair[0].error.get(key).filter(|before| grown(before)) else {
+                continue;
+            };
+            let (view, unit) = key.rsplit_once('_').unwrap_or((key, ""));
+            said.push(format!(
+                "The views disagree about {added}: with it the {quantity} error falls, but the {} grows from \
+                 {} to {}. Confirm it on another recording (--validate) before you build on it.",
+                view.replace('_', " "),
+                crate::measurement::quantity::quantity(before.validation, unit),
+                crate::measurement::quantity::quantity(after.validation, unit),
+            ));
+        }
+    }
+    said
+}
+
+/// The report, but for seed and time.
+pub fn report<F: ModelFamily + ?Sized>(
+    family: &F,
+    ladder: Ladder<'_, F>,
+    evidence: &Grounds<'_>,
+) -> Discovery {
+    let ambiguous = ladder.ambiguous();
+    let (rungs, ranking, added, split) = ladder.into_parts();
+    let quantity = family.quantity();
+    let floor = noise::floor_of(family, &evidence.last.residual);
+    let mut noise_floor = family.noise();
+    noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+
+    let error = split.rms(&evidence.last.residual);
+    let left = error.validation;
+    let uneven = error.fit > 0.0 && left > UNEVEN * error.fit;
+    let structure = structure(family, &evidence.where_last, left, floor);
+    let moves = structure.is_some() && evidence.within_noise.is_empty();
+    let verdict = match (added.is_empty(), moves || uneven) {
+        (true, false) => Verdict::NothingMissing,
+        (true, true) => Verdict::Unexplained,
+        (false, _) if ambiguous.is_empty() => Verdict::EffectsFound,
+        (false, _) => Verdict::Ambiguous,
+    };
+    let relative = |rung: usize| {
+        rungs[rung]
+            .error
+            .get(&diagnosis::relative_key(family))
+            .map_or(0.0, |e| 100.0 * e.validation)
+    };
+    let mut summary = match verdict {
+        Verdict::NothingMissing => format!(
+            "Nothing is missing: the base model leaves {:.2} % of the {}, and no effect of the \
+             library removes more of it than chance does.",
+            relative(0),
+            quantity.name
+        ),
+        Verdict::Unexplained => format!(
+            "The model leaves {:.2} % of the {}, and no effect of the library explains it.",
+            relative(0),
+            quantity.name
+        ),
+        Verdict::EffectsFound | Verdict::Ambiguous | Verdict::Stopped => format!(
+            "Missing: {}. With it the held-out error falls from {:.2} % to {:.2} % of the {}.",
+            added.join(", "),
+            relative(0),
+            relative(rungs.len() - 1),
+            quantity.name
+        ),
+    };
+    if let Some(place) = structure {
+        let _ = write!(
+            summary,
+            " What remains still depends on {} ({:.0} % of it; {}).",
+            place.coordinate,
+            100.0 * place.share,
+            place.note
+        );
+        if !evidence.within_noise.is_empty() {
+            summary.push_str(" The motion shows none of it: that may be the sensor's own.");
+        }
+    }
+    if uneven {
+        let place = evidence.where_last.first().filter(|place| place.p_value <= evidence.alpha);
+        let place = place.map_or(String::new(), |place| format!(": {}", place.note));
+        let _ = write!(
+            summary,
+            " The held-out part errs {:.1} times as much as the fitted one: something acts there that \
+             hardly acts in the rest{place}.",
+            left / error.fit
+        );
+    }
+    for choice in &ambiguous {
+        let _ = write!(
+            summary,
+            " This data cannot tell {} apart: {}",
+            choice.effects.join(" from "),
+            choice.experiment
+        );
+    }
+    let generic_term = structure.and_then(|place| {
+        let coordinate = family.coordinates().iter().find(|c| c.name == place.coordinate)?;
+        family.generic_term(coordinate, &generic::shape(coordinate, &evidence.last.residual))
+    });
+    let mut notes = contradictions(&rungs, &quantity.name);
+    if evidence.interrupted {
+        notes.push("Stopped before the end: further effects were not looked for.".to_owned());
+    }
+    Discovery {
+        verdict,
+        summary,
+        added,
+        ladder: rungs,
+        ranking,
+        where_it_fails: evidence.where_last.clone(),
+        where_base: evidence.where_base.clone(),
+        regimes: where_it_fails::regimes(family, &evidence.last.residual),
+        regimes_base: where_it_fails::regimes(family, &evidence.base.residual),
+        missing_force: None,
+        missing_force_base: None,
+        ambiguous,
+        generic_term,
+        noise_floor,
+        detection_limits: limits(family, &split, evidence),
+        decisions: Vec::new(),
+        budget: None,
+        untried: Vec::new(),
+        seed: 0,
+        wall_s: 0.0,
+        notes,
+        diagnosis: None,
+        diagnosis_base: None,
+        views: Vec::new(),
+        confirmation: None,
+        surrogates: None,
+        plots: family.plots(&evidence.base.model, &evidence.last.model),
+    }
+}

@@ -1,0 +1,34 @@
+//! Every error of a model.
+
+use std::collections::BTreeMap;
+
+use crate::family::ModelFamily;
+use crate::fit::Fit;
+use crate::report::SplitError;
+use crate::statistics::split::Split;
+
+/// Every error of a model: of the compared quantity, absolute and relative, and in the family's
+/// other views.
+pub fn errors<F: ModelFamily + ?Sized>(
+    family: &F,
+    fit: &Fit,
+    split: &Split,
+) -> BTreeMap<String, SplitError> {
+    let quantity = family.quantity();
+    let rms = split.rms(&fit.residual);
+    let size = split.rms(family.target());
+    let part = |error: f64, of: f64| if of > 0.0 { error / of } else { 0.0 };
+    let relative = SplitError {
+        fit: part(rms.fit, size.fit),
+        validation: part(rms.validation, size.validation),
+    };
+    let mut errors = family.views(&fit.model, split);
+    errors.insert(format!("{}_rms_{}", quantity.name, quantity.unit), rms);
+    errors.insert(relative_key(family), relative);
+    errors
+}
+
+/// Key of the relative error.
+pub fn relative_key<F: ModelFamily + ?Sized>(family: &F) -> String {
+    format!("{}_relative", family.quantity().name)
+}

@@ -1,0 +1,121 @@
+//! A recording seen one sample ahead: the seam between the deciding part and a subject.
+
+use super::fitted::Fitted;
+use super::series::Series;
+
+/// A recording seen one sample ahead.
+pub trait Ahead: Sync {
+    /// Number of settings of the process noise.
+    fn settings(&self) -> usize;
+
+    /// Standard deviation of the prediction error that a true model would have at a setting.
+    fn expected(&self, setting: usize) -> f64;
+
+    /// Standard deviation of the prediction error that the sensors alone make.
+    fn budget(&self) -> f64;
+
+    /// Prediction errors of models of the same terms, each at its own setting: one value per instant that
+    /// counts.
+    fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>>;
+
+    /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
+    fn instants(&self) -> &[(f64, usize)];
+
+    /// Share of the recording's errors that these are: where only a part of it is searched an effect gains as much less.
+    fn share(&self) -> f64 {
+        1.0
+    }
+
+    /// What is wrong with the recording itself, in words: with it no model is complete.
+    fn faults(&self) -> Option<String> {
+        None
+    }
+
+    /// Along what the errors may be uneven, beside time: name, unit and a value for each instant.
+    fn along(&self) -> Vec<(String, String, Vec<f64>)> {
+        Vec::new()
+    }
+
+    /// Ways to begin with a term beside a model.
+    fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial>;
+
+    /// Models beside this one in which the term that was added last may lie in a lower valley; few, and none where
+    /// its valley is wide.
+    fn variations(&self, _model: &Fitted) -> Vec<Fitted> {
+        Vec::new()
+    }
+
+    /// The same model with the term that was added last in the place of a related effect, as near to it as that can be:
+    /// where one of the two fits well the other one begins there.
+    fn relatives(&self, _model: &Fitted) -> Vec<Fitted> {
+        Vec::new()
+    }
+
+    /// What stands for no effect, but may predict as well as effects that are not there.
+    fn rivals(&self) -> Vec<Rival> {
+        Vec::new()
+    }
+
+    /// A term of a model that is no such effect as it was fitted (a gap of no width), and why, in words.
+    fn vanishes(&self, _model: &Fitted) -> Option<(usize, String)> {
+        None
+    }
+
+    /// From how many of a term's trials it is fitted, the best ones first.
+    fn starts(&self, _term: usize) -> usize {
+        1
+    }
+
+    /// Whether a term is tried by itself, not only as another form of one that is there.
+    fn is_candidate(&self, _term: usize) -> bool {
+        true
+    }
+
+    /// Changes of the errors by amplitudes of each of `trials`, to first order, where the family has a way that is
+    /// much cheaper than errors of the trials: the few best of them are then looked at as they are. Single
+    /// precision is enough to choose by.
+    fn columns(&self, _setting: usize, _term: usize, _trials: &[Trial]) -> Option<Columns> {
+        None
+    }
+
+    /// The force beside a model that would make it follow the recording, by its prediction errors at a setting.
+    fn missing_force(&self, _model: &Fitted, _setting: usize) -> Option<Series> {
+        None
+    }
+
+    /// A few pieces of the recording, on which the trials of a term are ranked at a fraction of the cost; nothing where
+    /// it is short. Its settings are those of the whole.
+    fn part(&self) -> Option<Box<dyn Ahead + '_>> {
+        None
+    }
+
+    /// The same model with a term in a more flexible form, to begin with; nothing where there is none.
+    fn flexible(&self, _model: &Fitted, _term: usize) -> Option<Fitted> {
+        None
+    }
+}
+
+/// A term that stands for no effect (a friction level that varies freely with time): where it predicts as well as the
+/// effects that were found the recording does not show them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rival {
+    /// The term. Its values are amplitudes, 0 where there is nothing.
+    pub term: usize,
+    /// What it is, in words.
+    pub words: &'static str,
+    /// The effects that are shapes of it.
+    pub kin: Vec<usize>,
+}
+
+/// A few columns for each of many trials.
+pub type Columns = std::sync::Arc<Vec<[Vec<f32>; 2]>>;
+
+/// A place to begin with a term.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trial {
+    /// The model with the term.
+    pub model: Fitted,
+    /// Indices of the values that are free and the size that each is tried at (they are 0 in the model); empty
+    /// where only the whole change can be looked at.
+    pub amplitudes: Vec<(usize, f64)>,
+}

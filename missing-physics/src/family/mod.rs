@@ -1,0 +1,26 @@
+//! The seam between the engine and a subject: what a model is made of, what it predicts, and how the data look
+//! one sample ahead.
+
+mod ahead;
+mod columns;
+mod coordinate;
+mod fitted;
+mod full_rate;
+mod generic;
+mod model_family;
+mod of_family;
+mod series;
+pub mod shapes;
+mod term;
+mod trials;
+
+pub use ahead::{Ahead, Columns, Rival, Trial};
+pub use columns::columns;
+pub use coordinate::{Coordinate, Quantity, Regime};
+pub use fitted::Fitted;
+pub use full_rate::FullRate;
+pub use generic::Generic;
+pub use model_family::ModelFamily;
+pub use series::Series;
+pub use term::{Parameter, Role, Term};
+pub use trials::trials;

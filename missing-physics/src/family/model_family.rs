@@ -1,0 +1,189 @@
+//! The seam between the engine and a subject: what a model is made of and what it predicts.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::ahead::Ahead;
+use super::columns::columns;
+use super::coordinate::{Coordinate, Quantity, Regime};
+use super::fitted::Fitted;
+use super::full_rate::FullRate;
+use super::generic::Generic;
+use super::shapes;
+use super::term::Term;
+use crate::report::{Plot, SplitError};
+use crate::statistics::split::Split;
+
+/// A recording seen through a kind of model: what the model should predict on a grid of instants,
+/// and what it predicts with given terms and parameters.
+pub trait ModelFamily: Sync {
+    /// Every term, those of each model first.
+    fn terms(&self) -> &[Term];
+
+    /// What is predicted.
+    fn quantity(&self) -> Quantity;
+
+    /// Instants of the grid, s.
+    fn time(&self) -> &[f64];
+
+    /// What the prediction is compared with, one value per grid point.
+    fn target(&self) -> &[f64];
+
+    /// How far the target or the regressors may be off because of the way they were measured or
+    /// smoothed (standard deviation in units of the target, one per grid point). Points with large
+    /// values count less where effects are screened.
+    fn doubt(&self) -> &[f64];
+
+    /// The prediction, one value per grid point.
+    fn predict(&self, model: &Fitted, out: &mut [f64]);
+
+    /// Shape parameters of a term to try in a screening, one vector (all shapes of the term, in
+    /// order) per trial. Terms without shapes have one empty vector.
+    fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
+        shapes::grid(&self.terms()[term])
+    }
+
+    /// What a term with these shape parameters would add to the prediction of `model`, per unit of
+    /// each amplitude. A term without amplitude has one column: all that it changes.
+    /// `prediction` is that of `model`.
+    fn columns(
+        &self,
+        model: &Fitted,
+        prediction: &[f64],
+        term: usize,
+        shape: &[f64],
+    ) -> Vec<Vec<f64>> {
+        columns(self, model, prediction, term, shape)
+    }
+
+    /// The recording one sample ahead, where the family can predict so.
+    fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
+        None
+    }
+
+    /// The same recording read in the other way that its data hardly tell from this one (an input held between samples
+    /// or sampled), and by how many nats the simplest model prefers this one; nothing where the data do tell, or where it
+    /// was stated.
+    fn other_reading(&self) -> Option<(&Self, f64)> {
+        None
+    }
+
+    /// How the recording was read where nobody stated it, in words.
+    fn reading(&self) -> Option<String> {
+        None
+    }
+
+    /// Parts of a long recording one sample ahead, for a search; nothing where the whole is short enough.
+    fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
+        None
+    }
+
+    /// The term that this one is another form of, if any. A form stands for its effect only where it is
+    /// clearly better than the main one.
+    fn form_of(&self, _term: usize) -> Option<usize> {
+        None
+    }
+
+    /// Whether the term acts on what the sensor shows, not on the plant: it is then only added where it lowers
+    /// the error in every view, as what is shown shows in all of them.
+    fn is_of_sensor(&self, _term: usize) -> bool {
+        false
+    }
+
+    /// Whether the term can be added to the model.
+    fn joins(&self, model: &Fitted, term: usize) -> bool {
+        !model.terms.contains(&term)
+    }
+
+    /// [`ModelFamily::columns`] for many shapes of a term, in their order. A family that can do so
+    /// cheaper than one by one says how.
+    fn columns_of_shapes(
+        &self,
+        model: &Fitted,
+        prediction: &[f64],
+        term: usize,
+        shapes: &[Vec<f64>],
+    ) -> Vec<Vec<Vec<f64>>> {
+        shapes.par_iter().map(|shape| self.columns(model, prediction, term, shape)).collect()
+    }
+
+    /// What the residual may depend on.
+    fn coordinates(&self) -> &[Coordinate];
+
+    /// Signals that tell whether two instants are the same experiment (a velocity and its sign):
+    /// shifting a residual along them must not map the experiment onto itself.
+    fn motion(&self) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// The experiment that would tell these terms apart, in words.
+    fn experiment(&self, terms: &[String]) -> String {
+        format!(
+            "repeat the experiment with more varied motion to separate {}.",
+            terms.join(" and ")
+        )
+    }
+
+    /// A term, as text that a user can add to a model, that describes structure of this shape along a
+    /// coordinate without explaining it; nothing where the family has none.
+    fn generic_term(&self, _coordinate: &Coordinate, _shape: &Generic) -> Option<String> {
+        None
+    }
+
+    /// Regimes of the experiment, exclusive and complete.
+    fn regimes(&self) -> &[Regime];
+
+    /// Blocks that belong together when data are held out; empty where the family has no wish.
+    /// Grid points `blocks[i]` form the i-th one.
+    fn blocks(&self) -> Vec<Range<usize>> {
+        Vec::new()
+    }
+
+    /// Errors of the model in other views than the prediction, by the name of the error.
+    fn views(&self, _model: &Fitted, _split: &Split) -> BTreeMap<String, SplitError> {
+        BTreeMap::new()
+    }
+
+    /// The error in a view up to which it may be the noise of the measurement alone, by the name of the error.
+    /// Where a model leaves no more, an effect is only added if it lowers that error too: a force that is
+    /// too small and too quick to be seen in the motion may be the sensor's own (the counts of an encoder,
+    /// differentiated twice, are a force that depends on the position).
+    fn view_noise(&self) -> BTreeMap<String, f64> {
+        BTreeMap::new()
+    }
+
+    /// The residual of the model at the full rate of the recording, for spectra; nothing where the grid
+    /// has all there is.
+    fn full_rate(&self, _model: &Fitted) -> Option<FullRate> {
+        None
+    }
+
+    /// Autocorrelation at lag 1, 2, ... of the grid that white noise in the data has after the family's
+    /// own smoothing; empty where it stays white.
+    fn colour(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// What is known of the noise from the measurement itself, by quantity.
+    fn noise(&self) -> BTreeMap<String, f64> {
+        BTreeMap::new()
+    }
+
+    /// The size of a term in words an engineer would use.
+    fn describe(&self, term: usize, values: &[f64]) -> String {
+        let words: Vec<String> = self.terms()[term]
+            .parameters
+            .iter()
+            .zip(values)
+            .map(|(parameter, value)| format!("{} {value:.4} {}", parameter.name, parameter.unit))
+            .collect();
+        words.join(", ")
+    }
+
+    /// Curves for the report: measurement, prediction, what the term looks like.
+    fn plots(&self, _base: &Fitted, _last: &Fitted) -> Vec<Plot> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,40 @@
+//! A model with its values, seen with the family that its terms belong to.
+
+use std::ops::Range;
+
+use super::fitted::Fitted;
+use super::model_family::ModelFamily;
+use super::term::{Parameter, Term};
+
+impl Fitted {
+    /// This model without one of its terms.
+    #[must_use]
+    pub fn without<F: ModelFamily + ?Sized>(&self, family: &F, term: usize) -> Self {
+        let mut less = Self::default();
+        for (position, &index) in self.terms.iter().enumerate() {
+            if index != term {
+                less.terms.push(index);
+                less.values.extend_from_slice(&self.values[self.range(family, position)]);
+            }
+        }
+        less
+    }
+
+    /// Where in `values` the parameters of the term at `position` stand.
+    pub fn range<F: ModelFamily + ?Sized>(&self, family: &F, position: usize) -> Range<usize> {
+        let count = |index: &usize| family.terms()[*index].parameters.len();
+        let start = self.terms[..position].iter().map(count).sum();
+        start..start + count(&self.terms[position])
+    }
+
+    /// All parameters with the term they belong to, in the order of `values`.
+    pub fn parameters<'a, F: ModelFamily + ?Sized>(
+        &'a self,
+        family: &'a F,
+    ) -> impl Iterator<Item = (&'a Term, &'a Parameter)> {
+        self.terms.iter().flat_map(|&index| {
+            let term = &family.terms()[index];
+            term.parameters.iter().map(move |parameter| (term, parameter))
+        })
+    }
+}

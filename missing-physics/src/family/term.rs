@@ -1,0 +1,56 @@
+//! What a model is made of: terms and their parameters.
+
+use aep_core::Scale;
+
+/// What a parameter does to the prediction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// The prediction is (nearly) linear in it and the term is absent at 0.
+    Amplitude,
+    /// Everything else: a characteristic velocity, a period, a time constant.
+    Shape,
+}
+
+/// One parameter of a term. Its sign is physics: `lower = 0` says that it cannot be negative.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name, e.g. `level`.
+    pub name: String,
+    /// SI unit, e.g. `N`.
+    pub unit: String,
+    /// Amplitude or shape.
+    pub role: Role,
+    /// Lower limit.
+    pub lower: f64,
+    /// Upper limit.
+    pub upper: f64,
+    /// Scale on which it is searched.
+    pub scale: Scale,
+    /// Where a search starts; for an amplitude also its typical size.
+    pub start: f64,
+}
+
+/// One term that a model may have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Identifier used in files and commands.
+    pub name: String,
+    /// The term in words.
+    pub title: String,
+    /// Its equation as text.
+    pub equation: String,
+    /// Its parameters, in the order in which values are given.
+    pub parameters: Vec<Parameter>,
+    /// True where every model has it and it is no candidate (an inertia).
+    pub always: bool,
+}
+
+impl Term {
+    /// The key of a parameter in reports: `term.parameter`, or just the name where both are equal.
+    pub fn key(&self, parameter: &Parameter) -> String {
+        if self.name == parameter.name {
+            return self.name.clone();
+        }
+        format!("{}.{}", self.name, parameter.name)
+    }
+}

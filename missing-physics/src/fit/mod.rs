@@ -1,0 +1,11 @@
+//! Models fitted to the compared quantity: a search for the valley, a refinement to its bottom, intervals.
+
+mod refine;
+mod search;
+pub mod uncertainty;
+
+pub(crate) use refine::moved;
+pub use refine::{Fit, as_given, evaluate, predict, refine, residual, weighted_square};
+pub(crate) use search::joined;
+pub use search::shaped;
+pub use search::{Found, identify, identify_by};

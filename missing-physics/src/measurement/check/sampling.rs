@@ -1,0 +1,105 @@
+//! When the samples were taken.
+
+use serde::{Deserialize, Serialize};
+
+use super::gaps::BRIDGED;
+use super::{Finding, neighbours};
+use crate::measurement::Recording;
+use crate::measurement::quantity::{percent, quantity};
+
+/// A step this many intervals long is a gap.
+const GAP: f64 = 2.5;
+
+/// A sampling interval longer than this is probably in another unit, s.
+const SLOW: f64 = 0.2;
+
+/// A hole in the samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Gap {
+    /// Time of the last sample before it, s.
+    pub at_s: f64,
+    /// From that sample to the next, s.
+    pub length_s: f64,
+}
+
+/// When the samples were taken.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sampling {
+    /// Length of all segments together, s.
+    pub duration_s: f64,
+    /// Median interval, s.
+    pub interval_s: f64,
+    /// Shortest interval, s.
+    pub shortest_s: f64,
+    /// Longest interval, s.
+    pub longest_s: f64,
+    /// Root mean square of the intervals' deviation from the median, gaps left out, as a fraction of it.
+    pub jitter: f64,
+    /// Holes, the longest first.
+    pub gaps: Vec<Gap>,
+}
+
+impl Sampling {
+    pub(super) fn of(recording: &Recording) -> Self {
+        let time = recording.time();
+        let steps: Vec<(f64, f64)> = neighbours(recording)
+            .map(|pair| (time[pair.start], time[pair.end] - time[pair.start]))
+            .collect();
+        let interval = recording.interval();
+        let (gaps, regular): (Vec<_>, Vec<_>) =
+            steps.iter().copied().partition(|(_, step)| *step > GAP * interval);
+        let mut gaps: Vec<Gap> =
+            gaps.into_iter().map(|(at_s, length_s)| Gap { at_s, length_s }).collect();
+        gaps.sort_by(|a, b| b.length_s.total_cmp(&a.length_s));
+        let lengths = steps.iter().map(|(_, step)| *step);
+        Self {
+            duration_s: lengths.clone().sum(),
+            interval_s: interval,
+            shortest_s: lengths.clone().fold(f64::INFINITY, f64::min),
+            longest_s: lengths.fold(0.0, f64::max),
+            jitter: jitter(&regular, interval),
+            gaps,
+        }
+    }
+
+    pub(super) fn findings(&self, findings: &mut Vec<Finding>) {
+        if let Some(longest) = self.gaps.first() {
+            findings.push(Finding::warning(format!(
+                "{} in the samples, the longest {} at {:.3} s: {}",
+                if self.gaps.len() == 1 {
+                    "a gap".to_owned()
+                } else {
+                    format!("{} gaps", self.gaps.len())
+                },
+                quantity(longest.length_s, "s"),
+                longest.at_s,
+                if longest.length_s > BRIDGED * self.interval_s {
+                    "the recording is cut into segments there"
+                } else {
+                    "bridged by straight lines"
+                },
+            )));
+        }
+        if self.interval_s > SLOW {
+            findings.push(Finding::warning(format!(
+                "one sample every {} is slow for a drive: is the time really in seconds?",
+                quantity(self.interval_s, "s"),
+            )));
+        }
+        if self.jitter > 0.05 {
+            findings.push(Finding::warning(format!(
+                "the sampling interval varies by {} around {}",
+                percent(self.jitter),
+                quantity(self.interval_s, "s"),
+            )));
+        }
+    }
+}
+
+fn jitter(steps: &[(f64, f64)], interval: f64) -> f64 {
+    if steps.is_empty() || interval == 0.0 {
+        return 0.0;
+    }
+    let squares: f64 = steps.iter().map(|(_, step)| (step / interval - 1.0).powi(2)).sum();
+    (squares / steps.len() as f64).sqrt()
+}

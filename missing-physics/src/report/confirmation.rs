@@ -1,0 +1,38 @@
+//! What other recordings say of a ladder.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// A rung of a ladder on recordings that had no part in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Confirmation {
+    /// The effect that the rung added; nothing on the base rung.
+    pub added: Option<String>,
+    /// Every effect of the rung.
+    pub effects: Vec<String>,
+    /// Name of the error -> its size with the parameters as they were found, nothing fitted.
+    pub error: BTreeMap<String, f64>,
+    /// Whether the effect, as it was found, removes at least the least gain of the squared error here,
+    /// and no other view contradicts.
+    pub holds: Option<bool>,
+    /// Share of the held-out squared error that the effect removes where the model below it is
+    /// identified anew on these recordings.
+    pub gain: Option<f64>,
+    /// Its p-value there.
+    pub p_value: Option<f64>,
+    /// What it gains in log-likelihood of the prediction errors as it was found, nothing fitted, nats.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub nats: Option<f64>,
+    /// Its place there among the candidates that gain more than chance, from 1.
+    pub place: Option<usize>,
+}
+
+/// A ladder on recordings that had no part in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Confirmed {
+    /// Names of the recordings.
+    pub recording: String,
+    /// One for each rung.
+    pub rungs: Vec<Confirmation>,
+}

@@ -1,0 +1,31 @@
+//! What a discovery found, as data: numbers, units and names, no computing. The bottom of the crate.
+
+mod candidate;
+mod confirmation;
+mod decision;
+mod diagnosis;
+mod discovery;
+mod metrics;
+mod missing_force;
+mod place;
+mod plot;
+mod residual_map;
+mod rung;
+mod surrogates;
+mod verdict;
+mod view;
+
+pub use candidate::Candidate;
+pub use confirmation::{Confirmation, Confirmed};
+pub use decision::{Decision, Outcome};
+pub use diagnosis::{Diagnosis, Independence, Line, Whiteness};
+pub use discovery::Discovery;
+pub use metrics::{Metrics, SplitMetrics};
+pub use missing_force::MissingForce;
+pub use place::{RegimeShare, Where};
+pub use plot::{Curve, Plot};
+pub use residual_map::{MapBin, ResidualMap};
+pub use rung::{Estimate, Rung, SplitError};
+pub use surrogates::Surrogates;
+pub use verdict::{Ambiguity, Budget, Verdict};
+pub use view::View;

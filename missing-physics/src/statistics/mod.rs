@@ -1,0 +1,14 @@
+//! What residuals and their parts say, as numbers: no model, no family.
+
+pub mod autocorrelation;
+pub mod basis;
+pub(crate) mod bins;
+pub mod in_time;
+pub mod metrics;
+pub(crate) mod periodogram;
+pub mod placebo;
+pub mod residual_tests;
+pub mod split;
+mod weights;
+
+pub use weights::weights;

@@ -1,0 +1,40 @@
+//! Terms by the names that a user gives.
+
+use crate::family::ModelFamily;
+
+/// Why a discovery cannot begin.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum DiscoverError {
+    /// A term that the family does not have.
+    #[error("there is no effect '{name}'; there are: {known}")]
+    UnknownTerm {
+        /// The name asked for.
+        name: String,
+        /// Every name there is.
+        known: String,
+    },
+}
+
+/// The indices of terms by name, those of every model first.
+///
+/// # Errors
+/// [`DiscoverError::UnknownTerm`] for a name that the family does not have.
+pub fn terms<F: ModelFamily + ?Sized>(
+    family: &F,
+    names: &[String],
+) -> Result<Vec<usize>, DiscoverError> {
+    let all = family.terms();
+    let mut indices: Vec<usize> = (0..all.len()).filter(|&k| all[k].always).collect();
+    for name in names {
+        let index = all.iter().position(|term| &term.name == name).ok_or_else(|| {
+            let known: Vec<&str> =
+                all.iter().filter(|t| !t.always).map(|t| t.name.as_str()).collect();
+            DiscoverError::UnknownTerm { name: name.clone(), known: known.join(", ") }
+        })?;
+        if !indices.contains(&index) {
+            indices.push(index);
+        }
+    }
+    Ok(indices)
+}
