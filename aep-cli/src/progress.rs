@@ -84,7 +84,8 @@ impl Observer for Progress {
             Event::Trying { effect, gain, .. } => {
                 self.say(format!("refitting with {effect} (expected gain {})", percent(*gain)));
             }
-            Event::Added { effect, before, after } => {
+            Event::Added { effects, before, after } => {
+                let effect = effects.join(" + ");
                 let (before, after) = (percent(*before), percent(*after));
                 self.line.println(format!("+ {effect}: held-out error {before} -> {after}"));
             }

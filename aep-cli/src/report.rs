@@ -91,7 +91,7 @@ fn comparison(discovery: &Discovery) -> Value {
         "metrics": last.and_then(|rung| rung.metrics),
         "views": discovery.views,
         "diagnosis": discovery.diagnosis,
-        "notes": discovery.notes,
+        "notes": aep_studio::words::notes(discovery),
         "ladder": discovery.ladder,
         "seed": discovery.seed,
     })

@@ -9,7 +9,7 @@ use missing_physics::diagnosis::where_it_fails::{View, coordinates, regimes};
 use missing_physics::diagnosis::{self, errors, noise};
 use missing_physics::fit::{self, Fit, uncertainty};
 use missing_physics::measurement::check::cut_at_gaps;
-use missing_physics::report::{Rung, SplitMetrics, Verdict};
+use missing_physics::report::{Rung, SplitMetrics, Verdict, floor_key};
 use missing_physics::statistics::split::Split;
 use missing_physics::statistics::weights;
 use missing_physics::{Coordinate, Discovery, Fitted, ModelFamily, Recording, terms};
@@ -31,10 +31,6 @@ type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
 /// Optimizers by name.
 pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
-
-/// What a comparison that ended early says.
-pub const STOPPED: &str =
-    "stopped early: this is what was found until then, and what takes long was left out";
 
 /// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
@@ -117,11 +113,11 @@ pub fn other_axis() -> Failure {
 }
 
 /// A fit as a rung: its parameters and errors.
-pub fn rung(family: &FrictionFamily, fit: &Fit, added: Option<String>) -> Rung {
+pub fn rung(family: &FrictionFamily, fit: &Fit, added: &[String]) -> Rung {
     let (split, fitted) = split(family);
     let effects = fit.model.terms.iter().map(|&term| &family.terms()[term]);
     Rung {
-        added,
+        added: added.to_vec(),
         effects: effects.filter(|term| !term.always).map(|term| term.name.clone()).collect(),
         parameters: uncertainty::estimates(family, fit, &fitted),
         error: errors(family, fit, &split),
@@ -156,11 +152,11 @@ pub fn comparison(
     let state: Vec<Coordinate> = family.coordinates().iter().filter(|c| c.state).cloned().collect();
     let mut noise_floor = family.noise();
     let floor = noise::floor(&last.residual, &state);
-    noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+    noise_floor.insert(floor_key(&quantity.name, &quantity.unit), floor);
     let mut discovery = Discovery {
         verdict: Verdict::NothingMissing,
         summary: String::new(),
-        added: rungs.iter().filter_map(|rung| rung.added.clone()).collect(),
+        added: rungs.iter().flat_map(|rung| rung.added.clone()).collect(),
         ladder: rungs,
         ranking: Vec::new(),
         where_it_fails: view(last),
@@ -176,6 +172,8 @@ pub fn comparison(
         decisions: Vec::new(),
         budget: None,
         untried: Vec::new(),
+        stopped: false,
+        disagreements: Vec::new(),
         seed,
         wall_s: 0.0,
         notes: Vec::new(),
@@ -190,7 +188,7 @@ pub fn comparison(
         diagnosis::attach(family, base, last, seed, &mut discovery);
     }
     if watch.is_over() {
-        discovery.notes.push(STOPPED.to_owned());
+        discovery.stopped = true;
     }
     discovery
 }

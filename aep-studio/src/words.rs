@@ -2,8 +2,9 @@
 
 use missing_physics::measurement::quantity::{number, percent, quantity};
 use missing_physics::report::{
-    Candidate, Confirmation, Confirmed, Diagnosis, Discovery, Estimate, MissingForce, Rung,
-    SplitError, Surrogates, Verdict, Whiteness,
+    Candidate, Confirmation, Confirmed, DetectionLimit, Diagnosis, Disagreement, Discovery,
+    Estimate, MissingForce, NamedError, NamedValue, Rung, Surrogates, Verdict, Whiteness,
+    floor_key,
 };
 
 mod compared;
@@ -13,33 +14,33 @@ pub use compared::{
     why_nothing,
 };
 
+/// What is said of a search that was cut, by Ctrl-C or at the end of its time.
+pub const STOPPED: &str =
+    "stopped early: this is what was found until then, and what takes long was left out";
 /// From this p-value on a finding may well be chance.
 const CHANCE: f64 = 0.05;
 
-/// What an error of a rung is, told by its key in the JSON.
+/// What an error of a rung is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ErrorName {
-    /// The key, e.g. `force_rms_N`.
+    /// Its key in the JSON, e.g. `force_rms_N`.
     pub key: String,
     /// What is compared, e.g. `force`.
     pub quantity: String,
-    /// SI unit; empty for a fraction.
-    pub unit: String,
+    /// SI unit; nothing for a fraction of the quantity's own size.
+    pub unit: Option<String>,
 }
 
 impl ErrorName {
-    /// Takes apart `force_relative` (a fraction) or `force_rms_N` (in its unit).
-    pub fn parse(key: &str) -> Self {
-        let (name, unit) = match key.split_once("_rms_") {
-            Some((name, unit)) => (name, unit.replace('_', "/")),
-            None => (key.strip_suffix("_relative").unwrap_or(key), String::new()),
-        };
-        Self { key: key.to_owned(), quantity: name.replace('_', " "), unit }
+    /// The name of an error.
+    pub fn of(error: &NamedError) -> Self {
+        let NamedError { quantity, unit, .. } = error;
+        Self { key: error.key(), quantity: quantity.clone(), unit: unit.clone() }
     }
 
     /// Whether it is a fraction of the quantity's own size.
     pub fn is_relative(&self) -> bool {
-        self.key.ends_with("_relative")
+        self.unit.is_none()
     }
 
     /// Heading of a column: `force error`, `window error`.
@@ -53,16 +54,21 @@ impl ErrorName {
 
     /// A value of it with its unit.
     pub fn value(&self, value: f64) -> String {
-        if self.is_relative() { percent(value) } else { quantity(value, &self.unit) }
+        in_unit(value, self.unit.as_deref())
     }
+}
+
+/// A number in its unit, or in per cent where it is a fraction.
+fn in_unit(value: f64, unit: Option<&str>) -> String {
+    unit.map_or_else(|| percent(value), |unit| quantity(value, unit))
 }
 
 /// The errors of the ladder: those relative first, then absolute ones of the same quantity, then
 /// the other views.
 pub fn errors(discovery: &Discovery) -> Vec<ErrorName> {
     let first = discovery.ladder.first();
-    let keys = first.into_iter().flat_map(|rung| rung.error.keys());
-    let mut names: Vec<ErrorName> = keys.map(|key| ErrorName::parse(key)).collect();
+    let mut names: Vec<ErrorName> =
+        first.into_iter().flat_map(|rung| rung.error.values()).map(ErrorName::of).collect();
     let main = names.iter().find(|name| name.is_relative()).map(|name| name.quantity.clone());
     names.sort_by_key(|name| (!name.is_relative(), Some(&name.quantity) != main.as_ref()));
     names
@@ -75,30 +81,64 @@ pub fn main_error(discovery: &Discovery) -> Option<ErrorName> {
 
 /// The noise floor in the measure of `name`, where it is known.
 pub fn floor(discovery: &Discovery, name: &ErrorName) -> Option<f64> {
-    let entries = discovery.noise_floor.iter();
-    let (key, floor) =
-        entries.clone().find(|(key, _)| key.starts_with(&format!("{}_", name.quantity)))?;
-    if !name.is_relative() {
-        return (key.ends_with(&name.unit)).then_some(*floor);
+    let floor = |unit: &str| discovery.noise_floor.get(&floor_key(&name.quantity, unit)).copied();
+    if let Some(unit) = &name.unit {
+        return floor(unit);
     }
     // A fraction of the quantity's size, which is the absolute error over the relative one.
     let base = discovery.ladder.first()?;
     let relative = base.error.get(&name.key)?.validation;
-    let absolute = base
-        .error
-        .iter()
-        .map(|(key, error)| (ErrorName::parse(key), error))
-        .find(|(other, _)| other.quantity == name.quantity && !other.is_relative())?
-        .1
-        .validation;
-    (absolute > 0.0).then(|| floor * relative / absolute)
+    let same = |error: &&NamedError| error.quantity == name.quantity && error.unit.is_some();
+    let absolute = base.error.values().find(same)?;
+    let floor = floor(absolute.unit.as_deref()?)?;
+    (absolute.validation > 0.0).then(|| floor * relative / absolute.validation)
 }
 
 /// Whether the search was cut before its end, so that what was found is what was found so far.
 pub fn is_cut(discovery: &Discovery) -> bool {
-    let said = |note: &String| note.starts_with("Stopped before the end");
-    let stopped = discovery.verdict == Verdict::Stopped;
-    stopped || !discovery.untried.is_empty() || discovery.notes.iter().any(said)
+    let stopped = discovery.stopped || discovery.verdict == Verdict::Stopped;
+    stopped || !discovery.untried.is_empty()
+}
+
+/// What the user should know besides: that the search was cut, where views disagree, and the engine's own notes.
+pub fn notes(discovery: &Discovery) -> Vec<String> {
+    let stopped = discovery.stopped.then(|| STOPPED.to_owned());
+    let views = discovery.disagreements.iter().map(disagreement);
+    stopped.into_iter().chain(views).chain(discovery.notes.iter().cloned()).collect()
+}
+
+fn disagreement(found: &Disagreement) -> String {
+    let Disagreement { added, compared, view, unit, before, after } = found;
+    let unit = unit.as_deref();
+    format!(
+        "The views disagree about {}: with it the {compared} error falls, but the {view} error grows from {} to {}. \
+         Confirm it on another recording (--validate) before you build on it.",
+        added.join(" + "),
+        in_unit(*before, unit),
+        in_unit(*after, unit),
+    )
+}
+
+/// Parameters of a candidate: `dF = 8.20 N, v_S = 1.10 mm/s`.
+pub fn size(of: &[NamedValue]) -> String {
+    let words = of.iter().map(|of| format!("{} = {}", of.name, quantity(of.value, &of.unit)));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// How large an effect would have had to be: `dF 1.20 N at v_S 1.10 mm/s`.
+pub fn detection_limit(limit: &DetectionLimit) -> String {
+    let name = &limit.parameter;
+    let mut text = limit.size.map_or_else(
+        || format!("no {name} within its limits"),
+        |size| format!("{name} {}", quantity(size, &limit.unit)),
+    );
+    for (k, at) in limit.at.iter().enumerate() {
+        text.push_str(if k == 0 { " at " } else { ", " });
+        text.push_str(&at.name);
+        text.push(' ');
+        text.push_str(&quantity(at.value, &at.unit));
+    }
+    text
 }
 
 /// The verdict in two or three words.
@@ -180,7 +220,11 @@ pub fn views_beside(discovery: &Discovery) -> Vec<ErrorName> {
 
 /// What a rung is called: `base model` or `+ stribeck`.
 pub fn rung(rung: &Rung) -> String {
-    rung.added.as_ref().map_or_else(|| "base model".to_owned(), |effect| format!("+ {effect}"))
+    if rung.added.is_empty() {
+        "base model".to_owned()
+    } else {
+        format!("+ {}", rung.added.join(" + "))
+    }
 }
 
 /// Value of an estimate, digits as its interval supports.
@@ -211,7 +255,7 @@ pub fn p_value(value: f64) -> String {
 pub fn explained(discovery: &Discovery) -> Option<f64> {
     let name = main_error(discovery)?;
     let floor = floor(discovery, &name)?;
-    let at = |rung: &Rung| rung.error.get(&name.key).map(|error: &SplitError| error.validation);
+    let at = |rung: &Rung| rung.error.get(&name.key).map(|error: &NamedError| error.validation);
     let (first, last) = (at(discovery.ladder.first()?)?, at(discovery.ladder.last()?)?);
     (first > floor).then(|| ((first - last) / (first - floor)).clamp(0.0, 1.0))
 }
@@ -220,7 +264,7 @@ pub fn explained(discovery: &Discovery) -> Option<f64> {
 pub fn main_unit(discovery: &Discovery) -> String {
     let Some(main) = main_error(discovery) else { return String::new() };
     let same = |name: &ErrorName| name.quantity == main.quantity && !name.is_relative();
-    errors(discovery).into_iter().find(same).map(|name| name.unit).unwrap_or_default()
+    errors(discovery).into_iter().find(same).and_then(|name| name.unit).unwrap_or_default()
 }
 
 /// The force that base and last model lack: `missing force: 2.31 N rms of 14.2 N (16.3 %), known to ±0.12 N; with what
@@ -344,7 +388,8 @@ fn yes(holds: bool) -> &'static str {
 pub fn confirmations(confirmed: &Confirmed) -> Vec<String> {
     let said = |here: &Confirmation| {
         let said = if here.holds? { "confirmed" } else { "not confirmed" };
-        Some(format!("{} is {said} by the other recordings.", here.added.as_ref()?))
+        let added = (!here.added.is_empty()).then(|| here.added.join(" + "))?;
+        Some(format!("{added} is {said} by the other recordings."))
     };
     confirmed.rungs.iter().filter_map(said).collect()
 }
@@ -370,6 +415,7 @@ pub fn surrogates(found: &Surrogates) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use missing_physics::report::SplitError;
 
     #[test]
     fn surrogates_that_were_not_searched_to_the_end_are_no_silence() {
@@ -383,16 +429,71 @@ mod tests {
     }
 
     #[test]
-    fn keys_of_errors_become_words_with_units() {
-        let relative = ErrorName::parse("force_relative");
+    fn errors_have_headings_and_values_in_their_unit() {
+        let error = SplitError { fit: 1.0, validation: 2.0 };
+        let relative = ErrorName::of(&NamedError::relative("force", error));
         assert_eq!(
-            (relative.heading().as_str(), relative.value(0.0408)),
-            ("force error, relative", "4.08 %".into())
+            (relative.key.as_str(), relative.heading().as_str(), relative.value(0.0408)),
+            ("force_relative", "force error, relative", "4.08 %".into())
         );
-        let window = ErrorName::parse("window_rms_m");
+        let window = ErrorName::of(&NamedError::absolute("window", "m", error));
         assert_eq!(
-            (window.heading().as_str(), window.value(2e-6)),
-            ("window error", "2.00 µm".into())
+            (window.key.as_str(), window.heading().as_str(), window.value(2e-6)),
+            ("window_rms_m", "window error", "2.00 µm".into())
+        );
+    }
+
+    #[test]
+    fn the_floor_of_a_fraction_is_a_fraction() {
+        let both = |value: f64| SplitError { fit: value, validation: value };
+        let errors = [
+            NamedError::relative("force", both(0.05)),
+            NamedError::absolute("force", "N", both(0.5)),
+            NamedError::absolute("window", "m", both(1e-6)),
+        ];
+        let json = serde_json::json!({"added": [], "effects": [], "parameters": {}, "error": {}, "p_value": null});
+        let mut rung: Rung = serde_json::from_value(json).unwrap();
+        rung.error = errors.iter().map(|error| (error.key(), error.clone())).collect();
+        let mut found = discovery("effects_found", true);
+        found.ladder = vec![rung];
+        found.noise_floor = [("force_N".to_owned(), 0.1), ("position_m".to_owned(), 1e-7)].into();
+        let floors: Vec<Option<f64>> =
+            errors.iter().map(|error| floor(&found, &ErrorName::of(error))).collect();
+        assert_eq!(floors, [Some(0.1 * 0.05 / 0.5), Some(0.1), None]);
+    }
+
+    #[test]
+    fn sizes_and_limits_are_numbers_until_here() {
+        let named = |name: &str, value, unit: &str| NamedValue {
+            name: name.into(),
+            value,
+            unit: unit.into(),
+        };
+        let at = vec![named("v_S", 1.1e-3, "m/s")];
+        assert_eq!(size(&[named("dF", 8.2, "N"), at[0].clone()]), "dF = 8.20 N, v_S = 1.10 mm/s");
+        let limit =
+            |size, at| DetectionLimit { parameter: "dF".into(), unit: "N".into(), size, at };
+        assert_eq!(detection_limit(&limit(Some(1.2), at)), "dF 1.20 N at v_S 1.10 mm/s");
+        assert_eq!(detection_limit(&limit(None, Vec::new())), "no dF within its limits");
+    }
+
+    #[test]
+    fn views_that_disagree_are_told_with_their_numbers() {
+        let mut found = discovery("effects_found", true);
+        found.disagreements = vec![Disagreement {
+            added: vec!["drift".into()],
+            compared: "force".into(),
+            view: "window".into(),
+            unit: Some("m".into()),
+            before: 1e-6,
+            after: 2e-6,
+        }];
+        found.stopped = true;
+        let said = notes(&found);
+        assert_eq!(said[0], STOPPED);
+        assert!(
+            said[1].contains("drift") && said[1].contains("from 1.00 µm to 2.00 µm"),
+            "{said:?}"
         );
     }
 
@@ -455,9 +556,8 @@ mod tests {
             let untried = vec!["drift".to_owned()];
             let cut = Discovery { untried, ..discovery(verdict, true) };
             assert_eq!(super::verdict(&cut), "Found so far");
-            let notes = vec!["Stopped before the end: ...".to_owned()];
-            let noted = Discovery { notes, ..discovery(verdict, true) };
-            assert_eq!(super::verdict(&noted), "Found so far");
+            let stopped = Discovery { stopped: true, ..discovery(verdict, true) };
+            assert_eq!(super::verdict(&stopped), "Found so far");
         }
         assert_eq!(verdict(&discovery("stopped", false)), "Stopped before anything was found");
     }

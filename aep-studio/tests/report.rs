@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use aep_studio::{Source, report};
 use missing_physics::measurement::check::{DataCheck, check};
-use missing_physics::report::Verdict;
+use missing_physics::report::{NamedValue, Verdict};
 use missing_physics::{Channel, Discovery, Recording};
 use serde_json::json;
 
@@ -48,7 +48,7 @@ fn everything_found_stands_on_the_page() {
         "4.08 %",
         "2.07 %",
         "constant speed",
-        "a line at 2.5 mm",
+        "largest mean error +0.600 N near 2.50 mm",
         "not determined by this data",
         "frictional-memory",
         "Speed up and slow down",
@@ -201,20 +201,21 @@ fn names_from_files_cannot_become_markup() {
     discovery.summary = evil.to_owned();
     discovery.notes = vec![evil.to_owned()];
     discovery.ladder[0].effects = vec![evil.to_owned()];
-    discovery.ladder[1].added = Some(evil.to_owned());
+    discovery.ladder[1].added = vec![evil.to_owned()];
     discovery.ranking[0][0].effect = evil.to_owned();
-    discovery.where_base[0].note = evil.to_owned();
+    discovery.where_base[0].unit = evil.to_owned();
     discovery.plots[0].title = evil.to_owned();
     let page = report::html(&discovery, &source(evil), &data());
     assert!(!page.contains("<img"));
     let mut discovery = ahead();
-    discovery.ladder[1].added = Some(evil.to_owned());
+    discovery.ladder[1].added = vec![evil.to_owned()];
     for decision in &mut discovery.decisions {
         decision.candidate[0] = evil.to_owned();
         decision.compared_with = vec![evil.to_owned()];
         decision.reason = evil.to_owned();
     }
-    discovery.ranking[0][0].size = evil.to_owned();
+    discovery.ranking[0][0].size =
+        vec![NamedValue { name: evil.to_owned(), value: 1.0, unit: evil.to_owned() }];
     let page = report::html(&discovery, &source(evil), &data());
     assert!(!page.contains("<img"));
 }

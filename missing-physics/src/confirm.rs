@@ -7,7 +7,7 @@ use crate::diagnosis;
 use crate::discover::suggest;
 use crate::family::{Ahead, Fitted, ModelFamily};
 use crate::fit::as_given;
-use crate::report::{Candidate, Confirmation, Rung, SplitError};
+use crate::report::{Candidate, Confirmation, NamedError, Rung};
 use crate::statistics::split::Split;
 use crate::task::{DiscoverError, Settings, terms};
 
@@ -33,12 +33,12 @@ pub fn confirm<F: ModelFamily + ?Sized>(
     let mut all: Vec<Confirmation> = Vec::new();
     for (k, rung) in ladder.iter().enumerate() {
         let mut here = as_found(family, rung)?;
-        if let (Some(added), Some(below)) = (&rung.added, k.checked_sub(1)) {
+        if let (false, Some(below)) = (rung.added.is_empty(), k.checked_sub(1)) {
             let grown = |key: &String| here.error[key] / all[below].error[key];
             let less = grown(&key).powi(2) <= 1.0 - settings.least_gain;
             let contradicted = here.error.keys().any(|key| grown(key) > CONTRADICTION);
             here.holds = Some(less && !contradicted);
-            anew(family, &ladder[below].effects, added, settings, &mut here)?;
+            anew(family, &ladder[below].effects, &rung.added, settings, &mut here)?;
         }
         all.push(here);
     }
@@ -61,7 +61,7 @@ fn one_ahead<F: ModelFamily + ?Sized>(
         let setting = fit::best_setting(ahead, &model);
         let found = fit::evaluated(ahead, model.clone(), setting);
         let anew = fit::Fitter::new(family, ahead).refit(model, setting, STEPS);
-        if let Some((before, before_anew)) = below.filter(|_| rung.added.is_some()) {
+        if let Some((before, before_anew)) = below.filter(|_| !rung.added.is_empty()) {
             let by = comparison.unfitted(&before, &found);
             let gain = comparison.compare(&before_anew, &anew);
             let points = anew.errors.len() as f64 / anew.correlation();
@@ -87,7 +87,7 @@ fn as_found<F: ModelFamily + ?Sized>(
     let split = Split::new(points, family.blocks());
     let fitted = split.fit(points).iter().filter(|fit| **fit).count() as f64 / points as f64;
     // No part had a part in the fit; together they are all there is.
-    let whole = |error: SplitError| {
+    let whole = |error: NamedError| {
         (fitted * error.fit.powi(2) + (1.0 - fitted) * error.validation.powi(2)).sqrt()
     };
     let errors = diagnosis::errors(family, &fit, &split).into_iter();
@@ -121,7 +121,7 @@ fn model_of<F: ModelFamily + ?Sized>(family: &F, rung: &Rung) -> Result<Fitted, 
 fn anew<F: ModelFamily + ?Sized>(
     family: &F,
     effects: &[String],
-    added: &str,
+    added: &[String],
     settings: &Settings<'_>,
     here: &mut Confirmation,
 ) -> Result<(), DiscoverError> {
@@ -134,6 +134,8 @@ fn anew<F: ModelFamily + ?Sized>(
         let term = family.terms().iter().position(|term| term.name == name)?;
         Some(family.form_of(term).unwrap_or(term))
     };
+    // Several that were added together have no single candidate.
+    let [added] = added else { return Ok(()) };
     let added = main(added);
     let is_added = |candidate: &&Candidate| added.is_some() && main(&candidate.effect) == added;
     let Some(candidate) = candidates.iter().find(is_added) else { return Ok(()) };

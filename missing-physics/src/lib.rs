@@ -36,7 +36,9 @@ mod task;
 
 pub use confirm::confirm;
 pub use discover::{discover, suggest};
-pub use family::{Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Term};
+pub use family::{
+    Coordinate, Fitted, FnFamily, ModelFamily, Parameter, Quantity, Regime, Role, Term,
+};
 pub use measurement::{Channel, Hold, Recording, RecordingError};
 pub use report::Discovery;
 pub use task::{DiscoverError, Event, Observer, Settings, Thresholds, terms};

@@ -14,7 +14,7 @@ use crate::args::{DataArgs, LimitArgs, OutputArgs};
 use crate::failure::Failure;
 use crate::output::{self, heading};
 use crate::report::{Kind, Report};
-use crate::steps::{self, STOPPED};
+use crate::steps;
 use crate::stop::Watch;
 
 /// Compare a model with a measurement: errors in several views and where it fails
@@ -59,7 +59,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let Some(fit) = fits.first() else {
         return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
     };
-    let rung = steps::rung(&family, fit, None);
+    let rung = steps::rung(&family, fit, &[]);
     let effects = rung.effects.join(" + ");
     let mut discovery = steps::comparison(&family, (fit, fit), vec![rung], args.seed, watch);
     let (views, mut notes) = side_by_side(&family, &args.model, &fits, watch)?;
@@ -68,9 +68,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     notes.splice(0..0, missing_physics::diagnosis::views::disagreements(&views));
     notes.append(&mut discovery.notes);
     let stopped = watch.is_over();
-    if stopped && !notes.iter().any(|note| note == STOPPED) {
-        notes.push(STOPPED.to_owned());
-    }
+    discovery.stopped |= stopped;
     discovery.notes = notes;
     let data = check(&loaded.recording);
     let report = Report {
@@ -99,7 +97,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         + &output::where_it_fails(&discovery.where_it_fails)
         + &heading("Is what remains noise?")
         + &remains
-        + &(if stopped { output::note(STOPPED) } else { String::new() })
+        + &(if stopped { output::note(aep_studio::words::STOPPED) } else { String::new() })
         + &files;
     output::print(&text)?;
     watch.end()

@@ -178,10 +178,9 @@ fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> Strin
         text += &output::where_it_fails(&discovery.where_base);
     }
     for (rung, candidates) in discovery.ranking.iter().enumerate() {
-        let added = discovery.ladder.get(rung + 1).and_then(|next| next.added.as_deref());
-        let outcome = match added {
-            Some(effect) => format!("{effect} is added"),
-            None => "nothing is added".to_owned(),
+        let outcome = match discovery.ladder.get(rung + 1).map_or(&[][..], |next| &next.added) {
+            [] => "nothing is added".to_owned(),
+            effects => format!("{} is added", effects.join(" + ")),
         };
         text += &heading(&format!("Which effect is missing, rung {}: {outcome}", rung + 1));
         if let Some(why) = words::why_nothing(discovery, rung, thresholds) {

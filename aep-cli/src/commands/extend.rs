@@ -66,8 +66,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let method = steps::method("aep")?;
     let (after, _) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
     let rungs = vec![
-        steps::rung(&family, &before, None),
-        steps::rung(&family, &after, Some(added.clone())),
+        steps::rung(&family, &before, &[]),
+        steps::rung(&family, &after, std::slice::from_ref(&added)),
     ];
     let last = rungs[1].clone();
     let extended = steps::model(&family, &last)?;

@@ -106,7 +106,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         return in_time(args, &loaded.recording, &family, &effects, (progress, quiet), watch);
     }
     let (fit, evaluations) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
-    let rung = steps::rung(&family, &fit, None);
+    let rung = steps::rung(&family, &fit, &[]);
     let model = steps::model(&family, &rung)?;
     let discovery = steps::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, watch);
     drop(progress);

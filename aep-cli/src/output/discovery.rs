@@ -5,7 +5,7 @@ use std::fmt::Write;
 use aep_studio::words;
 use anstyle::AnsiColor;
 use missing_physics::measurement::quantity::{number, percent};
-use missing_physics::report::{Candidate, RegimeShare, Rung, SplitError, Verdict, Where};
+use missing_physics::report::{Candidate, NamedError, RegimeShare, Rung, Verdict, Where};
 use missing_physics::{Discovery, Thresholds};
 
 use crate::args::library;
@@ -66,7 +66,7 @@ pub fn verdict(discovery: &Discovery) -> String {
 
 /// What there is to add, a line each.
 pub fn notes(discovery: &Discovery) -> String {
-    discovery.notes.iter().map(|text| note(text)).collect()
+    words::notes(discovery).iter().map(|text| note(text)).collect()
 }
 
 /// A line that adds something.
@@ -82,7 +82,7 @@ fn limits(discovery: &Discovery) -> String {
     let mut table =
         Table::new(&[("effect", Align::Left), ("would have been found above", Align::Left)]);
     for (effect, size) in &discovery.detection_limits {
-        table.row([effect.clone(), size.clone()]);
+        table.row([effect.clone(), words::detection_limit(size)]);
     }
     format!("\n{}", table.text())
 }
@@ -161,7 +161,7 @@ fn ladder_ahead(discovery: &Discovery, first: &str) -> String {
     let largest = sizes.filter(|size| size.is_finite()).fold(f64::MIN_POSITIVE, f64::max);
     let dash = || "-".to_owned();
     for rung in &discovery.ladder {
-        let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
+        let name = if rung.added.is_empty() { first.to_owned() } else { words::rung(rung) };
         let mut cells = vec![
             name.replace(" + ", "\n+ "),
             bar(rung.budget.unwrap_or(0.0) / largest, BAR),
@@ -214,7 +214,7 @@ pub fn ladder(discovery: &Discovery, first: &str) -> String {
         }
         let mut table = Table::new(&columns);
         for rung in &discovery.ladder {
-            let name = rung.added.as_ref().map_or_else(|| first.to_owned(), |_| words::rung(rung));
+            let name = if rung.added.is_empty() { first.to_owned() } else { words::rung(rung) };
             // Effects that were added together stand below each other: the table is wide as it is.
             let name = name.replace(" + ", "\n+ ");
             let p_value = rung.p_value.map_or_else(|| "-".to_owned(), words::p_value);
@@ -247,7 +247,7 @@ fn ladder_cells(
     let main = error(&names[0]).map_or(0.0, |error| error.validation);
     let mut cells = vec![bar(main / largest, BAR)];
     for name in names {
-        let text = |pick: fn(&SplitError) -> f64| {
+        let text = |pick: fn(&NamedError) -> f64| {
             error(name).map_or_else(|| "-".to_owned(), |error| name.value(pick(error)))
         };
         cells.push(text(|error| error.validation));
@@ -308,7 +308,7 @@ pub fn where_it_fails(places: &[Where]) -> String {
             percent(place.share),
             words::p_value(place.p_value),
             // The heading says it once for all.
-            place.note.strip_prefix(MEAN_ERROR).unwrap_or(&place.note).trim().to_owned(),
+            place.largest(),
         ]);
     }
     others(table.text())
@@ -351,7 +351,7 @@ pub fn ranking(candidates: &[Candidate], shown_of: Columns) -> String {
             bar(candidate.gain, BAR),
             percent(candidate.gain),
             p_value(candidate.p_value),
-            shortened(&candidate.size, most),
+            shortened(&words::size(&candidate.size), most),
         ];
         let first = std::iter::once(candidate.effect.clone()).chain(ahead.then_some(nats));
         table.row(first.chain(cells));
@@ -429,11 +429,14 @@ mod tests {
 
     /// A ladder of one effect; `budget` where it is judged by prediction errors.
     fn discovery(budget: bool) -> Discovery {
-        let both = |value: f64| json!({"fit": value, "validation": value});
+        let both = |quantity: &str, unit: Option<&str>, value: f64| {
+            json!({"quantity": quantity, "unit": unit, "fit": value,
+            "validation": value})
+        };
         let rung = |added: Option<&str>, effects: &[&str], error: f64, times: f64| {
-            let mut rung = json!({"added": added, "effects": effects, "parameters": {"coulomb.F_C": estimate(3.0)},
-                "error": {"force_relative": both(error), "force_rms_N": both(10.0 * error),
-                    "window_rms_m": both(1e-5 * error)},
+            let mut rung = json!({"added": added.as_slice(), "effects": effects, "parameters": {"coulomb.F_C": estimate(3.0)},
+                "error": {"force_relative": both("force", None, error), "force_rms_N": both("force", Some("N"), 10.0 * error),
+                    "window_rms_m": both("window", Some("m"), 1e-5 * error)},
                 "p_value": added.map(|_| 0.001)});
             if budget {
                 rung["budget"] = times.into();
@@ -441,8 +444,11 @@ mod tests {
             }
             rung
         };
+        let sizes: Vec<Value> = (1..=4)
+            .map(|k| json!({"name": format!("K_{k}"), "value": f64::from(k), "unit": "N/um"}))
+            .collect();
         let candidate = json!({"effect": "presliding:free", "gain": 0.31, "p_value": 0.001,
-            "size": "K_1 1.00 N/um, K_2 2.00 N/um, K_3 3.00 N/um, K_4 4.00 N/um", "nats": budget.then_some(812.3)});
+            "size": sizes, "nats": budget.then_some(812.3)});
         let decision = |set: &[&str], outcome: &str, difference: f64| {
             json!({"rung": set.len() - 1, "candidate": set, "compared_with": ["coulomb"], "difference": difference,
                 "standard_error": 15.0, "budget": 1.04, "outcome": outcome, "reason": "the best set of 1"})
@@ -518,7 +524,7 @@ mod tests {
             "+812",
             "31.0 %",
             "<= 0.001",
-            "K_1 1.00 N/um, K_2 2.00 N/um, ...",
+            "K_1 = 1.00 N/um, K_2 = 2.00 N/um, ...",
         ] {
             assert!(text.contains(part), "'{part}' is not in\n{text}");
         }

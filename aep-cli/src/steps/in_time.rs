@@ -79,7 +79,7 @@ fn first_guess(
         .cloned()
         .collect();
     let (fit, _) = identify(family, &shown, (&Aep::practical(), seed), watch)?;
-    let values = model(family, &rung(family, &fit, None))?;
+    let values = model(family, &rung(family, &fit, &[]))?;
     let mut model = Model::new(family.axis(), values.mass())?;
     for name in effects {
         model = model.with_effect(library().find(name)?)?;

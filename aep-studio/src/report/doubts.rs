@@ -3,6 +3,7 @@
 use missing_physics::Discovery;
 
 use crate::html::{self, concat, escape, table};
+use crate::words;
 
 /// The section of the limits; nothing where there are none.
 pub(super) fn section(discovery: &Discovery) -> String {
@@ -42,7 +43,7 @@ fn limits(discovery: &Discovery) -> String {
     let rows: Vec<Vec<String>> = discovery
         .detection_limits
         .iter()
-        .map(|(effect, size)| vec![escape(effect), escape(size)])
+        .map(|(effect, size)| vec![escape(effect), escape(&words::detection_limit(size))])
         .collect();
     format!(
         "<details open><summary>Effects that were not found, and the size at which they would have been</summary>{}</details>",
@@ -51,9 +52,10 @@ fn limits(discovery: &Discovery) -> String {
 }
 
 fn notes(discovery: &Discovery) -> String {
-    if discovery.notes.is_empty() {
+    let notes = words::notes(discovery);
+    if notes.is_empty() {
         return String::new();
     }
-    let items = concat(discovery.notes.iter().map(|note| format!("<li>{}</li>", escape(note))));
+    let items = concat(notes.iter().map(|note| format!("<li>{}</li>", escape(note))));
     format!("<h3>Notes</h3><ul>{items}</ul>")
 }

@@ -1,7 +1,7 @@
 //! The ladder: errors as bars that fall to the noise floor.
 
 use missing_physics::Discovery;
-use missing_physics::report::{Rung, SplitError};
+use missing_physics::report::{NamedError, Rung, SplitError};
 
 use crate::html::{self, escape, table};
 use crate::words::{self, ErrorName};
@@ -75,7 +75,7 @@ fn bars(discovery: &Discovery, name: &ErrorName) -> String {
     let errors: Vec<(&Rung, SplitError)> = discovery
         .ladder
         .iter()
-        .filter_map(|rung| rung.error.get(&name.key).map(|error| (rung, *error)))
+        .filter_map(|rung| rung.error.get(&name.key).map(|error| (rung, error.size())))
         .collect();
     let sizes = errors.iter().flat_map(|(_, error)| [error.fit, error.validation]);
     let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
@@ -128,7 +128,7 @@ fn numbers(discovery: &Discovery) -> String {
             let mut cells = vec![escape(&words::rung(rung))];
             for name in &names {
                 let error = rung.error.get(&name.key);
-                let text = |pick: fn(&SplitError) -> f64| {
+                let text = |pick: fn(&NamedError) -> f64| {
                     error.map_or("-".to_owned(), |error| escape(&name.value(pick(error))))
                 };
                 cells.push(text(|error| error.validation));

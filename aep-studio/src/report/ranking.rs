@@ -43,20 +43,19 @@ fn list(
     rung: usize,
     candidates: &[Candidate],
 ) -> String {
-    let next = discovery.ladder.get(rung + 1).and_then(|next| next.added.as_deref());
-    let outcome = next.map_or_else(
-        || "nothing was added".to_owned(),
-        |effect| format!("<b>{}</b> was added", escape(effect)),
-    );
-    let model = match discovery.ladder.get(rung).and_then(|rung| rung.added.as_deref()) {
-        _ if rung == 0 => "For the base model".to_owned(),
-        Some(effect) => format!("After {}", escape(effect)),
-        None => format!("Rung {}", rung + 1),
+    let at = |rung: usize| discovery.ladder.get(rung).map_or(&[][..], |rung| &rung.added);
+    let (before, added) = (at(rung), at(rung + 1));
+    let outcome = match added {
+        [] => "nothing was added".to_owned(),
+        effects => format!("<b>{}</b> was added", escape(&effects.join(" + "))),
     };
-    let added: Vec<&str> =
-        next.map(|names| names.split('+').map(str::trim).collect()).unwrap_or_default();
+    let model = match before {
+        _ if rung == 0 => "For the base model".to_owned(),
+        [] => format!("Rung {}", rung + 1),
+        effects => format!("After {}", escape(&effects.join(" + "))),
+    };
     let ahead = is_ahead(candidates);
-    let rows: Vec<Vec<String>> = candidates.iter().map(|c| row(c, &added, ahead)).collect();
+    let rows: Vec<Vec<String>> = candidates.iter().map(|c| row(c, added, ahead)).collect();
     let headings: &[&str] = if ahead {
         &["Effect", "Size", "#Gain, nats", "", "#Share", "#Chance"]
     } else {
@@ -71,11 +70,13 @@ fn list(
     )
 }
 
-fn row(candidate: &Candidate, added: &[&str], ahead: bool) -> Vec<String> {
-    let chosen = added.contains(&candidate.effect.as_str());
+fn row(candidate: &Candidate, added: &[String], ahead: bool) -> Vec<String> {
+    let chosen = added.contains(&candidate.effect);
     let name = escape(&candidate.effect);
-    let mut cells =
-        vec![if chosen { format!("<b>{name}</b>") } else { name }, escape(&candidate.size)];
+    let mut cells = vec![
+        if chosen { format!("<b>{name}</b>") } else { name },
+        escape(&words::size(&candidate.size)),
+    ];
     if ahead {
         cells.push(escape(&candidate.nats.map_or_else(|| "-".to_owned(), words::nats)));
     }

@@ -5,6 +5,7 @@ use missing_physics::measurement::quantity::{percent, quantity};
 use missing_physics::report::View;
 
 use crate::html::{self, concat, escape, table};
+use crate::words;
 
 const LEAD: &str = "The same model, judged in different ways. Fit % is 100 (1 - |e| / |y - mean y|); numbers \
     are of held-out data.";
@@ -46,7 +47,7 @@ fn notes(discovery: &Discovery) -> String {
     let of_views = discovery.views.iter().flat_map(|view| &view.warnings);
     let items = concat(
         of_views
-            .chain(&discovery.notes)
+            .chain(&words::notes(discovery))
             .map(|note| format!("<li class=warning>{}</li>", escape(note))),
     );
     if items.is_empty() { items } else { format!("<ul class=findings>{items}</ul>") }

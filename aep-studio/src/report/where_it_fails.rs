@@ -82,7 +82,11 @@ fn listed(places: &[&Where]) -> String {
         .map(|place| {
             let class = if place.p_value <= CHANCE { "held" } else { "quiet" };
             vec![
-                format!("{}<small>{}</small>", escape(&place.coordinate), escape(&place.note)),
+                format!(
+                    "{}<small>{}</small>",
+                    escape(&place.coordinate),
+                    escape(&place.in_words())
+                ),
                 bar(place.share, class),
                 percent(place.share),
                 escape(&words::p_value(place.p_value)),

@@ -231,9 +231,9 @@ mod tests {
 
     fn discovery(added: &[&str], decisions: &[Value]) -> Discovery {
         let rung = |added: Value, effects: Vec<&str>| json!({"added": added, "effects": effects, "parameters": {}, "error": {}, "p_value": null});
-        let mut ladder = vec![rung(Value::Null, vec!["coulomb"])];
+        let mut ladder = vec![rung(json!([]), vec!["coulomb"])];
         for (k, effect) in added.iter().enumerate() {
-            ladder.push(rung(json!(effect), [&["coulomb"], &added[..=k]].concat()));
+            ladder.push(rung(json!([effect]), [&["coulomb"], &added[..=k]].concat()));
         }
         let json = json!({
             "verdict": "effects_found", "added": added, "ladder": ladder, "where": [], "ambiguous": [],

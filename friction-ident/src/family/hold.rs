@@ -65,7 +65,7 @@ impl HoldChoice {
         } else {
             format!("that predicts better by {:.0} nats", self.nats)
         };
-        format!("The force is taken as {how}: {why}. Say --hold to decide it yourself.")
+        format!("The force is taken as {how}: {why}.")
     }
 }
 

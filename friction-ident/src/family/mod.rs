@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use missing_physics::family::{Ahead, FullRate, Generic};
-use missing_physics::report::{Plot, SplitError};
+use missing_physics::report::{NamedError, Plot};
 use missing_physics::statistics::basis::{dot, gram, solve};
 use missing_physics::statistics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
@@ -447,11 +447,10 @@ impl ModelFamily for FrictionFamily {
         self.blocks.clone()
     }
 
-    fn views(&self, fitted: &Fitted, split: &Split) -> BTreeMap<String, SplitError> {
-        self.model(fitted).map_or_else(
-            |_| BTreeMap::new(),
-            |model| views::views(&model, &self.recording, &self.time, split),
-        )
+    fn views(&self, fitted: &Fitted, split: &Split) -> Vec<NamedError> {
+        let model = self.model(fitted).ok();
+        let view = |model| views::views(&model, &self.recording, &self.time, split);
+        model.and_then(view).into_iter().collect()
     }
 
     fn view_noise(&self) -> BTreeMap<String, f64> {

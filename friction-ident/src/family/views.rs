@@ -1,12 +1,10 @@
 //! The model's error in restarted windows, next to that of the force.
 
-use std::collections::BTreeMap;
-
 use missing_physics::Recording;
-use missing_physics::report::SplitError;
+use missing_physics::report::{NamedError, SplitError};
 use missing_physics::statistics::split::Split;
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Quantity};
 use crate::model::Model;
 use crate::windows::{Window, WindowErrors, WindowOptions, window_errors};
 
@@ -26,11 +24,9 @@ pub fn views(
     recording: &Recording,
     grid: &[f64],
     split: &Split,
-) -> BTreeMap<String, SplitError> {
+) -> Option<NamedError> {
     let length = LENGTH.max(SAMPLES * recording.interval());
-    let Ok(errors) = window_errors(model, recording, &WindowOptions::new(length)) else {
-        return BTreeMap::new();
-    };
+    let errors = window_errors(model, recording, &WindowOptions::new(length)).ok()?;
     let (mut fit, mut validation) = (Vec::new(), Vec::new());
     for window in errors.windows {
         let middle = recording.time()[usize::midpoint(window.samples.start, window.samples.end)];
@@ -42,16 +38,17 @@ pub fn views(
     }
     let rms = |windows: Vec<Window>| WindowErrors { length, windows }.robust_rms();
     let error = SplitError { fit: rms(fit), validation: rms(validation) };
-    BTreeMap::from([(name(model.axis()), error)])
+    Some(named(model.axis(), error))
 }
 
-fn name(axis: Axis) -> String {
-    if axis == Axis::Rotary { "window_rms_rad" } else { "window_rms_m" }.to_owned()
+fn named(axis: Axis, error: SplitError) -> NamedError {
+    NamedError::absolute("window", axis.unit(Quantity::Length), error)
 }
 
 /// The error up to which windows may only show the noise of the position.
 pub(super) fn noise(axis: Axis, position_noise: f64) -> (String, f64) {
-    (name(axis), NOISE * position_noise)
+    let size = NOISE * position_noise;
+    (named(axis, SplitError { fit: size, validation: size }).key(), size)
 }
 
 /// Whether the block around an instant is held out; nothing between blocks.

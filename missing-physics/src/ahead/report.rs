@@ -16,12 +16,11 @@ use super::node::Node;
 use super::{Ahead, reading, scales};
 use crate::diagnosis::where_it_fails::{self, View};
 use crate::diagnosis::{self, generic, noise};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::{Fitted, ModelFamily, detection_limit, sizes};
 use crate::fit::{self, Fit, uncertainty};
-use crate::measurement::quantity::quantity;
 use crate::report::{
-    Ambiguity, Budget, Candidate, Decision, Discovery, MissingForce, RegimeShare, Rung,
-    SplitMetrics, Verdict,
+    Ambiguity, Budget, Candidate, Decision, DetectionLimit, Discovery, MissingForce, NamedValue,
+    RegimeShare, Rung, SplitMetrics, Verdict, floor_key,
 };
 use crate::statistics::split::Split;
 use crate::statistics::weights;
@@ -141,9 +140,6 @@ fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
     asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
 }
 
-/// Note of a search that was cut, by Ctrl-C or at the end of its time.
-const STOPPED: &str = "Stopped before the end: what is told is what was found so far.";
-
 /// Largest p-value of a dependence on a coordinate that is told as structure.
 const STRUCTURE: f64 = 0.005;
 
@@ -179,7 +175,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let quantity = family.quantity();
         let mut noise_floor = family.noise();
         let floor = noise::floor_of(family, &last_fit.residual);
-        noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+        noise_floor.insert(floor_key(&quantity.name, &quantity.unit), floor);
         let ladder = self.ladder(&split, &base_fit, &fits);
         let last = self.lacks(self.found.rungs.last().unwrap_or(&self.found.base), last_fit);
         let base =
@@ -211,7 +207,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             untried: self.names(&self.found.untried),
             seed: 0,
             wall_s: 0.0,
-            notes: self.notes(),
+            notes: self.found.notes.clone(),
+            stopped: self.found.stopped,
+            disagreements: Vec::new(),
             diagnosis: None,
             diagnosis_base: None,
             views: Vec::new(),
@@ -230,11 +228,6 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             Some((missing, regimes)) => (Some(missing), regimes),
             None => (None, where_it_fails::regimes(self.family, &fit.residual)),
         }
-    }
-
-    fn notes(&self) -> Vec<String> {
-        let cut = self.found.stopped.then(|| STOPPED.to_owned());
-        cut.into_iter().chain(self.found.notes.iter().cloned()).collect()
     }
 
     /// A term that describes what is left along the coordinate that it depends on most, as text to add.
@@ -311,10 +304,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     fn rung(&self, node: &Node, fit: &Fit, split: &Split, k: Option<usize>) -> Rung {
         let terms = self.family.terms();
         let effects = fit.model.terms.iter().filter(|&&t| !terms[t].always);
-        let added = k.map(|k| terms[self.found.added[k]].name.clone());
+        let added = k.iter().map(|k| terms[self.found.added[*k]].name.clone());
         let gain: Option<&Difference> = k.map(|k| &self.found.gains[k]);
         Rung {
-            added,
+            added: added.collect(),
             effects: effects.map(|&t| terms[t].name.clone()).collect(),
             parameters: uncertainty::estimates(
                 self.family,
@@ -365,15 +358,16 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         self.found.ranking.iter().map(row).collect()
     }
 
-    fn size(&self, term: usize, model: &Fitted) -> String {
+    fn size(&self, term: usize, model: &Fitted) -> Vec<NamedValue> {
         let position = model.terms.iter().position(|t| *t == term);
-        position.map_or_else(String::new, |position| {
-            self.family.describe(term, &model.values[model.range(self.family, position)])
+        position.map_or_else(Vec::new, |position| {
+            let values = &model.values[model.range(self.family, position)];
+            sizes(&self.family.terms()[term], values)
         })
     }
 
     /// The size at which each candidate that was not found would have gained enough.
-    fn limits(&self) -> BTreeMap<String, String> {
+    fn limits(&self) -> BTreeMap<String, DetectionLimit> {
         let mut limits = BTreeMap::new();
         for promise in &self.found.last_screening {
             let term = &self.family.terms()[promise.term];
@@ -383,20 +377,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                 continue;
             }
             let size = (self.settings.thresholds.better / leverage).sqrt();
-            let words = if size <= amplitude.upper {
-                format!("{} {}", amplitude.name, quantity(size, &amplitude.unit))
-            } else {
-                format!("no {} within its limits", amplitude.name)
-            };
             let Some(start) = promise.starts.first() else { continue };
             let values = &start.values[start.range(self.family, start.terms.len() - 1)];
-            let shapes = term.parameters.iter().zip(values);
-            let at: Vec<String> = shapes
-                .filter(|(parameter, _)| parameter.role == crate::family::Role::Shape)
-                .map(|(p, value)| format!("{} {}", p.name, quantity(*value, &p.unit)))
-                .collect();
-            let at = if at.is_empty() { String::new() } else { format!(" at {}", at.join(", ")) };
-            limits.insert(term.name.clone(), words + &at);
+            limits.insert(term.name.clone(), detection_limit(term, values, amplitude, size));
         }
         limits
     }
@@ -449,7 +432,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             }
             let likely = places.iter().find(|place| place.p_value <= STRUCTURE);
             if let Some(place) = likely.filter(|_| self.found.places.is_empty()) {
-                let _ = write!(text, " It depends most on {}: {}.", place.coordinate, place.note);
+                let _ =
+                    write!(text, " It depends most on {}: {}.", place.coordinate, place.in_words());
             }
         }
         for choice in ambiguous {

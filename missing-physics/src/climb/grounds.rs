@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::screen::Screened;
 use crate::fit::Fit;
-use crate::report::{SplitError, Where};
+use crate::report::{NamedError, Where};
 
 /// Another view contradicts an effect where its error grows by this factor on held-out data and on
 /// fitted data as well: one of them alone is a matter of a few windows.
@@ -27,5 +27,5 @@ pub struct Grounds<'a> {
     /// True where time ran out or the user stopped it.
     pub interrupted: bool,
     /// Views in which the last model leaves no more than the noise of the measurement may.
-    pub within_noise: BTreeMap<String, SplitError>,
+    pub within_noise: BTreeMap<String, NamedError>,
 }

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::climb::screen::Screened;
 use crate::diagnosis::{errors, relative_key};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::{Fitted, ModelFamily, sizes};
 use crate::fit::{Fit, uncertainty};
-use crate::report::{Ambiguity, Candidate, Rung, SplitError, SplitMetrics};
+use crate::report::{Ambiguity, Candidate, NamedError, Rung, SplitMetrics};
 use crate::statistics::split::Split;
 
 /// What has been added so far, rung by rung.
@@ -31,9 +31,6 @@ struct Contest {
     rivals: Vec<usize>,
 }
 
-/// Between the names of effects that were added together.
-const JOINED: &str = " + ";
-
 impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
     pub(crate) fn new(family: &'a F, split: Split, fitted: Vec<f64>) -> Self {
         Self {
@@ -50,17 +47,14 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
 
     pub(crate) fn push(&mut self, added: &[usize], fit: &Fit, p_value: Option<f64>) {
         self.added.extend(added);
-        let name = (!added.is_empty()).then(|| self.joined(added));
-        let rung = self.rung(name, fit, p_value);
+        let rung = self.rung(self.names(added), fit, p_value);
         self.rungs.push(rung);
         self.models.push(fit.model.clone());
     }
 
-    /// Names of terms that were added together.
-    pub(crate) fn joined(&self, terms: &[usize]) -> String {
-        let names: Vec<&str> =
-            terms.iter().map(|&term| self.family.terms()[term].name.as_str()).collect();
-        names.join(JOINED)
+    /// Names of terms.
+    pub(crate) fn names(&self, terms: &[usize]) -> Vec<String> {
+        terms.iter().map(|&term| self.family.terms()[term].name.clone()).collect()
     }
 
     /// Takes back all that has been added.
@@ -99,12 +93,8 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         let rungs: Vec<usize> = self.rungs_with(from).collect();
         for (k, fit) in rungs.into_iter().zip(fits) {
             let old = &self.rungs[k];
-            let renamed = |added: &String| {
-                let parts: Vec<&str> = added.split(JOINED).collect();
-                let new = parts.iter().map(|part| if *part == names[0] { names[1] } else { part });
-                new.collect::<Vec<_>>().join(JOINED)
-            };
-            let added = old.added.as_ref().map(renamed);
+            let renamed = |name: &String| if name == names[0] { names[1] } else { name }.to_owned();
+            let added: Vec<String> = old.added.iter().map(renamed).collect();
             let p_value = if added == old.added { old.p_value } else { Some(p_value) };
             self.rungs[k] = self.rung(added, fit, p_value);
             self.models[k] = fit.model.clone();
@@ -131,7 +121,7 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
             effect: self.family.terms()[candidate.term].name.clone(),
             gain: candidate.gain,
             p_value: candidate.p_value,
-            size: self.family.describe(candidate.term, &candidate.values),
+            size: sizes(&self.family.terms()[candidate.term], &candidate.values),
             nats: None,
         });
         self.ranking.push(row.collect());
@@ -174,7 +164,7 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
     }
 
     /// Every error of the last rung.
-    pub(crate) fn views(&self) -> BTreeMap<String, SplitError> {
+    pub(crate) fn views(&self) -> BTreeMap<String, NamedError> {
         self.rungs.last().map(|rung| rung.error.clone()).unwrap_or_default()
     }
 
@@ -207,7 +197,7 @@ impl<'a, F: ModelFamily + ?Sized> Ladder<'a, F> {
         (self.rungs, self.ranking, added, self.split)
     }
 
-    fn rung(&self, added: Option<String>, fit: &Fit, p_value: Option<f64>) -> Rung {
+    fn rung(&self, added: Vec<String>, fit: &Fit, p_value: Option<f64>) -> Rung {
         let terms = self.family.terms();
         let effects = fit.model.terms.iter().filter(|&&k| !terms[k].always);
         Rung {

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::climb::grounds::{CONTRADICTION, Grounds};
 use crate::climb::screen::Screened;
+use crate::climb::views::by_key;
 use crate::family::shapes::{amplitudes, assemble};
-use crate::family::{Fitted, ModelFamily, Role};
+use crate::family::{Fitted, ModelFamily, Role, detection_limit};
 use crate::fit::moved;
-use crate::measurement::quantity::quantity;
-use crate::report::SplitError;
+use crate::report::{DetectionLimit, NamedError};
 use crate::statistics::basis::{dot, gram, solve};
 use crate::statistics::split::Split;
 
@@ -24,7 +24,7 @@ pub fn limits<F: ModelFamily + ?Sized>(
     family: &F,
     split: &Split,
     evidence: &Grounds<'_>,
-) -> BTreeMap<String, String> {
+) -> BTreeMap<String, DetectionLimit> {
     let square: f64 = evidence.last.residual.iter().map(|r| r * r).sum();
     evidence
         .screened
@@ -35,20 +35,7 @@ pub fn limits<F: ModelFamily + ?Sized>(
             let amplitude = amplitudes(term).first().copied()?;
             let size = (candidate.needed.max(0.0) * square / candidate.leverage).sqrt();
             let size = shown(family, split, evidence, candidate, size);
-            let words = if size <= amplitude.upper {
-                format!("{} {}", amplitude.name, quantity(size, &amplitude.unit))
-            } else {
-                format!("no {} within its limits", amplitude.name)
-            };
-            let shapes = term.parameters.iter().zip(&candidate.values);
-            let at: Vec<String> = shapes
-                .filter(|(parameter, _)| parameter.role == Role::Shape)
-                .map(|(parameter, value)| {
-                    format!("{} {}", parameter.name, quantity(*value, &parameter.unit))
-                })
-                .collect();
-            let at = if at.is_empty() { String::new() } else { format!(" at {}", at.join(", ")) };
-            Some((term.name.clone(), words + &at))
+            Some((term.name.clone(), detection_limit(term, &candidate.values, amplitude, size)))
         })
         .collect()
 }
@@ -68,8 +55,8 @@ fn shown<F: ModelFamily + ?Sized>(
     }
     let wanted = CONTRADICTION.powi(2) - 1.0;
     for _ in 0..STEPS {
-        let after = family.views(&with(family, evidence, candidate, size), split);
-        let growth = |(name, before): (&String, &SplitError)| {
+        let after = by_key(family.views(&with(family, evidence, candidate, size), split));
+        let growth = |(name, before): (&String, &NamedError)| {
             let error = after.get(name)?;
             let share = |error: f64, before: f64| (error / before).powi(2) - 1.0;
             Some(share(error.fit, before.fit).min(share(error.validation, before.validation)))

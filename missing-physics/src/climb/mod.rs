@@ -322,7 +322,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.fit = tried.fit;
         self.ladder.push(&tried.terms, &self.fit, Some(tried.p_value));
         self.observer.event(&Event::Added {
-            effect: &self.ladder.joined(&tried.terms),
+            effects: &self.ladder.names(&tried.terms),
             before,
             after: self.ladder.relative(),
         });
@@ -352,7 +352,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             notes.push(format!(
                 "nearest: {} would lower the held-out error only to {:.2} %, and most of the structure \
                  would remain: that is not the cause",
-                self.ladder.joined(&self.ladder.added()),
+                self.ladder.names(&self.ladder.added()).join(" + "),
                 100.0 * self.ladder.relative(),
             ));
             self.ladder.clear();

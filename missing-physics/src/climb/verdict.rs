@@ -8,7 +8,7 @@ use crate::climb::limits::limits;
 use crate::diagnosis::{self, generic, noise, where_it_fails};
 use crate::family::ModelFamily;
 use crate::fit::Fit;
-use crate::report::{Discovery, Rung, SplitError, Verdict, Where};
+use crate::report::{Disagreement, Discovery, NamedError, Rung, Verdict, Where, floor_key};
 use crate::statistics::split::Split;
 
 /// A residual that depends on a coordinate with at most this p-value may be structure.
@@ -59,29 +59,26 @@ pub fn explains_little<F: ModelFamily + ?Sized>(
 
 /// Effects with which another view than that of `quantity` grows, on fitted and held-out data alike, though
 /// the error of `quantity` fell by more.
-fn contradictions(rungs: &[Rung], quantity: &str) -> Vec<String> {
-    let mut said = Vec::new();
-    for pair in rungs.windows(2) {
-        let Some(added) = &pair[1].added else { continue };
-        for (key, after) in pair[1].error.iter().filter(|(key, _)| !key.starts_with(quantity)) {
-            let grown = |before: &SplitError| {
+fn contradictions(rungs: &[Rung], quantity: &str) -> Vec<Disagreement> {
+    let mut found = Vec::new();
+    for pair in rungs.windows(2).filter(|pair| !pair[1].added.is_empty()) {
+        for (key, after) in pair[1].error.iter().filter(|(_, error)| error.quantity != quantity) {
+            let grown = |before: &&NamedError| {
                 after.fit > CONTRADICTION * before.fit
                     && after.validation > CONTRADICTION * before.validation
             };
-            let Some(before) = pair[0].error.get(key).filter(|before| grown(before)) else {
-                continue;
-            };
-            let (view, unit) = key.rsplit_once('_').unwrap_or((key, ""));
-            said.push(format!(
-                "The views disagree about {added}: with it the {quantity} error falls, but the {} grows from \
-                 {} to {}. Confirm it on another recording (--validate) before you build on it.",
-                view.replace('_', " "),
-                crate::measurement::quantity::quantity(before.validation, unit),
-                crate::measurement::quantity::quantity(after.validation, unit),
-            ));
+            let Some(before) = pair[0].error.get(key).filter(grown) else { continue };
+            found.push(Disagreement {
+                added: pair[1].added.clone(),
+                compared: quantity.to_owned(),
+                view: after.quantity.clone(),
+                unit: after.unit.clone(),
+                before: before.validation,
+                after: after.validation,
+            });
         }
     }
-    said
+    found
 }
 
 /// The report, but for seed and time.
@@ -95,7 +92,7 @@ pub fn report<F: ModelFamily + ?Sized>(
     let quantity = family.quantity();
     let floor = noise::floor_of(family, &evidence.last.residual);
     let mut noise_floor = family.noise();
-    noise_floor.insert(format!("{}_{}", quantity.name, quantity.unit), floor);
+    noise_floor.insert(floor_key(&quantity.name, &quantity.unit), floor);
 
     let error = split.rms(&evidence.last.residual);
     let left = error.validation;
@@ -140,7 +137,7 @@ pub fn report<F: ModelFamily + ?Sized>(
             " What remains still depends on {} ({:.0} % of it; {}).",
             place.coordinate,
             100.0 * place.share,
-            place.note
+            place.in_words()
         );
         if !evidence.within_noise.is_empty() {
             summary.push_str(" The motion shows none of it: that may be the sensor's own.");
@@ -148,7 +145,7 @@ pub fn report<F: ModelFamily + ?Sized>(
     }
     if uneven {
         let place = evidence.where_last.first().filter(|place| place.p_value <= evidence.alpha);
-        let place = place.map_or(String::new(), |place| format!(": {}", place.note));
+        let place = place.map_or(String::new(), |place| format!(": {}", place.in_words()));
         let _ = write!(
             summary,
             " The held-out part errs {:.1} times as much as the fitted one: something acts there that \
@@ -168,10 +165,7 @@ pub fn report<F: ModelFamily + ?Sized>(
         let coordinate = family.coordinates().iter().find(|c| c.name == place.coordinate)?;
         family.generic_term(coordinate, &generic::shape(coordinate, &evidence.last.residual))
     });
-    let mut notes = contradictions(&rungs, &quantity.name);
-    if evidence.interrupted {
-        notes.push("Stopped before the end: further effects were not looked for.".to_owned());
-    }
+    let disagreements = contradictions(&rungs, &quantity.name);
     Discovery {
         verdict,
         summary,
@@ -193,7 +187,9 @@ pub fn report<F: ModelFamily + ?Sized>(
         untried: Vec::new(),
         seed: 0,
         wall_s: 0.0,
-        notes,
+        notes: Vec::new(),
+        stopped: evidence.interrupted,
+        disagreements,
         diagnosis: None,
         diagnosis_base: None,
         views: Vec::new(),

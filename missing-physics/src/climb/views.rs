@@ -6,14 +6,14 @@ use super::Search;
 use super::grounds::CONTRADICTION;
 use crate::family::ModelFamily;
 use crate::fit::Fit;
-use crate::report::SplitError;
+use crate::report::NamedError;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// Whether no other view of the error contradicts: what really acts on the plant helps
     /// in every view, unless something else that is missing spoils that view.
     pub(super) fn confirmed(&self, fit: &Fit) -> bool {
         let before = self.ladder.views();
-        let after = self.family.views(&fit.model, &self.split);
+        let after = by_key(self.family.views(&fit.model, &self.split));
         let old = self.split.rms(&self.fit.residual);
         let new = self.split.rms(&fit.residual);
         // A view may grow by as much as the residual itself falls.
@@ -36,7 +36,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let after = if seen.is_empty() {
             BTreeMap::new()
         } else {
-            self.family.views(&fit.model, &self.split)
+            by_key(self.family.views(&fit.model, &self.split))
         };
         seen.iter().all(|(name, before)| {
             after.get(name).is_none_or(|error| {
@@ -47,7 +47,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// Views in which the present model leaves no more than the noise of the measurement may.
-    pub(super) fn within_noise(&self) -> BTreeMap<String, SplitError> {
+    pub(super) fn within_noise(&self) -> BTreeMap<String, NamedError> {
         let noise = self.family.view_noise();
         let mut views = self.ladder.views();
         views.retain(|name, error| {
@@ -55,4 +55,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         });
         views
     }
+}
+
+/// Errors by their keys.
+pub(super) fn by_key(errors: Vec<NamedError>) -> BTreeMap<String, NamedError> {
+    errors.into_iter().map(|error| (error.key(), error)).collect()
 }

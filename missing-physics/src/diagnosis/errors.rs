@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::family::ModelFamily;
 use crate::fit::Fit;
-use crate::report::SplitError;
+use crate::report::{NamedError, SplitError};
 use crate::statistics::split::Split;
 
 /// Every error of a model: of the compared quantity, absolute and relative, and in the family's
@@ -13,7 +13,7 @@ pub fn errors<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
     split: &Split,
-) -> BTreeMap<String, SplitError> {
+) -> BTreeMap<String, NamedError> {
     let quantity = family.quantity();
     let rms = split.rms(&fit.residual);
     let size = split.rms(family.target());
@@ -23,12 +23,12 @@ pub fn errors<F: ModelFamily + ?Sized>(
         validation: part(rms.validation, size.validation),
     };
     let mut errors = family.views(&fit.model, split);
-    errors.insert(format!("{}_rms_{}", quantity.name, quantity.unit), rms);
-    errors.insert(relative_key(family), relative);
-    errors
+    errors.push(NamedError::absolute(&quantity.name, &quantity.unit, rms));
+    errors.push(NamedError::relative(&quantity.name, relative));
+    errors.into_iter().map(|error| (error.key(), error)).collect()
 }
 
 /// Key of the relative error.
 pub fn relative_key<F: ModelFamily + ?Sized>(family: &F) -> String {
-    format!("{}_relative", family.quantity().name)
+    crate::report::relative_key(&family.quantity().name)
 }

@@ -4,10 +4,9 @@
 use rayon::prelude::*;
 
 use crate::family::{Coordinate, ModelFamily};
-use crate::measurement::quantity::quantity;
-use crate::report::{RegimeShare, Where};
+use crate::report::{Pattern, RegimeShare, Where};
 use crate::statistics::bins::Bins;
-use crate::statistics::in_time::Trials;
+use crate::statistics::in_time::{Structure, Trials};
 use crate::statistics::placebo;
 
 /// Number of rearranged residuals.
@@ -60,8 +59,8 @@ fn along(coordinate: &Coordinate, view: &View<'_>, orders: &[Vec<usize>], unit: 
         tested(coordinate, view, orders, |seen| coarse.explained(seen).max(fine.explained(seen)));
     let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
     let local = fine.explained(&plain) > coarse.explained(&plain);
-    let note = worst(if local { &fine } else { &coarse }, coordinate, &plain, unit);
-    Where { coordinate: coordinate.name.clone(), share, p_value, note }
+    let pattern = worst(if local { &fine } else { &coarse }, coordinate, &plain);
+    place(coordinate, unit, (share, p_value), pattern)
 }
 
 /// Dependence on a coordinate that only ever grows: time.
@@ -74,8 +73,11 @@ fn along_time(
     let trials = Trials::new(&coordinate.values);
     let (share, p_value) = tested(coordinate, view, orders, |seen| trials.best(seen).0);
     let plain = parity(coordinate, view.residual, &vec![1.0; view.residual.len()]);
-    let note = trials.best(&plain).1.words(unit);
-    Where { coordinate: coordinate.name.clone(), share, p_value, note }
+    let pattern = match trials.best(&plain).1 {
+        Structure::Step { time, height } => Pattern::Step { height, time },
+        Structure::Sine { period, amplitude } => Pattern::Sine { amplitude, period },
+    };
+    place(coordinate, unit, (share, p_value), Some(pattern))
 }
 
 /// A statistic of the residual and its p-value among those of the rearranged residual.
@@ -142,13 +144,23 @@ pub fn regimes_where<F: ModelFamily + ?Sized>(
     shares
 }
 
-/// The bin with the largest mean value, in words.
-fn worst(bins: &Bins, coordinate: &Coordinate, values: &[f64], unit: &str) -> String {
-    let Some((at, mean)) = bins.peak(&coordinate.values, values) else { return String::new() };
-    let opposes = if coordinate.parity.is_some() { " against the motion" } else { "" };
-    let sign = if mean > 0.0 { "+" } else { "" };
-    let (size, place) = (quantity(mean, unit), quantity(at, &coordinate.unit));
-    format!("largest mean error {sign}{size}{opposes} near {place}")
+/// The bin with the largest mean value.
+fn worst(bins: &Bins, coordinate: &Coordinate, values: &[f64]) -> Option<Pattern> {
+    let against_motion = coordinate.parity.is_some();
+    let (at, error) = bins.peak(&coordinate.values, values)?;
+    Some(Pattern::Mean { error, at, against_motion })
+}
+
+/// Where the model fails along `coordinate`.
+fn place(coordinate: &Coordinate, unit: &str, by: (f64, f64), pattern: Option<Pattern>) -> Where {
+    Where {
+        coordinate: coordinate.name.clone(),
+        share: by.0,
+        p_value: by.1,
+        unit: coordinate.unit.clone(),
+        error_unit: unit.to_owned(),
+        pattern,
+    }
 }
 
 pub(crate) fn parity(coordinate: &Coordinate, residual: &[f64], weights: &[f64]) -> Vec<f64> {

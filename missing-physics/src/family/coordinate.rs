@@ -26,6 +26,14 @@ pub struct Coordinate {
     pub state: bool,
 }
 
+impl Coordinate {
+    /// Part of the state that the physics depends on; one value per grid point.
+    pub fn of_state(name: &str, unit: &str, values: Vec<f64>) -> Self {
+        let (name, unit) = (name.to_owned(), unit.to_owned());
+        Self { name, unit, values, parity: None, state: true }
+    }
+}
+
 /// A regime of the experiment. The regimes of a family do not overlap and cover every grid point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regime {

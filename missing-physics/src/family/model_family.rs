@@ -13,17 +13,69 @@ use super::full_rate::FullRate;
 use super::generic::Generic;
 use super::shapes;
 use super::term::Term;
-use crate::report::{Plot, SplitError};
+use crate::report::{NamedError, Plot};
 use crate::statistics::split::Split;
 
 /// A recording seen through a kind of model: what the model should predict on a grid of instants,
 /// and what it predicts with given terms and parameters.
+///
+/// Four methods are required: [`terms`](Self::terms), [`time`](Self::time), [`target`](Self::target) and
+/// [`predict`](Self::predict). All others say more of the subject and have defaults. Where a closure can predict,
+/// [`FnFamily`](super::FnFamily) is the shorter way.
+///
+/// ```
+/// use missing_physics::{Fitted, ModelFamily, Settings, Term, discover};
+///
+/// /// A signal of a slope and, perhaps, of a wave.
+/// struct Signal {
+///     terms: Vec<Term>,
+///     time: Vec<f64>,
+///     measured: Vec<f64>,
+/// }
+///
+/// impl ModelFamily for Signal {
+///     fn terms(&self) -> &[Term] {
+///         &self.terms
+///     }
+///     fn time(&self) -> &[f64] {
+///         &self.time
+///     }
+///     fn target(&self) -> &[f64] {
+///         &self.measured
+///     }
+///     fn predict(&self, model: &Fitted, out: &mut [f64]) {
+///         out.fill(0.0);
+///         for (position, &term) in model.terms.iter().enumerate() {
+///             let values = &model.values[model.range(self, position)];
+///             for (out, t) in out.iter_mut().zip(&self.time) {
+///                 *out += values[0] * if term == 0 { *t } else { (values[1] * t).sin() };
+///             }
+///         }
+///     }
+/// }
+///
+/// let terms = vec![
+///     Term::new("slope", "a slope", "a t").amplitude("a", "V/s", (-5.0, 5.0), 1.0).always(),
+///     Term::new("wave", "a wave", "b sin(w t)")
+///         .amplitude("b", "V", (-5.0, 5.0), 1.0)
+///         .shape("w", "rad/s", (1.0, 20.0), 5.0),
+/// ];
+/// let time: Vec<f64> = (0..400).map(|k| 0.02 * f64::from(k)).collect();
+/// let noise = |k: usize| 0.02 * ((k * k) as f64).sin();
+/// let measured = time.iter().enumerate().map(|(k, t)| 0.7 * t + 0.4 * (6.0 * t).sin() + noise(k));
+/// let measured = measured.collect();
+/// let found = discover(&Signal { terms, time, measured }, &Settings::default(), &mut ())?;
+/// assert_eq!(found.added, ["wave"]);
+/// # Ok::<(), missing_physics::DiscoverError>(())
+/// ```
 pub trait ModelFamily: Sync {
     /// Every term, those of each model first.
     fn terms(&self) -> &[Term];
 
     /// What is predicted.
-    fn quantity(&self) -> Quantity;
+    fn quantity(&self) -> Quantity {
+        Quantity { name: "output".into(), unit: "1".into() }
+    }
 
     /// Instants of the grid, s.
     fn time(&self) -> &[f64];
@@ -33,8 +85,10 @@ pub trait ModelFamily: Sync {
 
     /// How far the target or the regressors may be off because of the way they were measured or
     /// smoothed (standard deviation in units of the target, one per grid point). Points with large
-    /// values count less where effects are screened.
-    fn doubt(&self) -> &[f64];
+    /// values count less where effects are screened. Empty where every point is as good as any other.
+    fn doubt(&self) -> &[f64] {
+        &[]
+    }
 
     /// The prediction, one value per grid point.
     fn predict(&self, model: &Fitted, out: &mut [f64]);
@@ -110,7 +164,9 @@ pub trait ModelFamily: Sync {
     }
 
     /// What the residual may depend on.
-    fn coordinates(&self) -> &[Coordinate];
+    fn coordinates(&self) -> &[Coordinate] {
+        &[]
+    }
 
     /// Signals that tell whether two instants are the same experiment (a velocity and its sign):
     /// shifting a residual along them must not map the experiment onto itself.
@@ -133,7 +189,9 @@ pub trait ModelFamily: Sync {
     }
 
     /// Regimes of the experiment, exclusive and complete.
-    fn regimes(&self) -> &[Regime];
+    fn regimes(&self) -> &[Regime] {
+        &[]
+    }
 
     /// Blocks that belong together when data are held out; empty where the family has no wish.
     /// Grid points `blocks[i]` form the i-th one.
@@ -141,12 +199,12 @@ pub trait ModelFamily: Sync {
         Vec::new()
     }
 
-    /// Errors of the model in other views than the prediction, by the name of the error.
-    fn views(&self, _model: &Fitted, _split: &Split) -> BTreeMap<String, SplitError> {
-        BTreeMap::new()
+    /// Errors of the model in other views than the prediction.
+    fn views(&self, _model: &Fitted, _split: &Split) -> Vec<NamedError> {
+        Vec::new()
     }
 
-    /// The error in a view up to which it may be the noise of the measurement alone, by the name of the error.
+    /// The error in a view up to which it may be the noise of the measurement alone, by [`NamedError::key`].
     /// Where a model leaves no more, an effect is only added if it lowers that error too: a force that is
     /// too small and too quick to be seen in the motion may be the sensor's own (the counts of an encoder,
     /// differentiated twice, are a force that depends on the position).

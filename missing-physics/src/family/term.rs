@@ -46,6 +46,49 @@ pub struct Term {
 }
 
 impl Term {
+    /// A term without parameters: its name, what it is, its equation as text.
+    pub fn new(name: &str, title: &str, equation: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            title: title.to_owned(),
+            equation: equation.to_owned(),
+            parameters: Vec::new(),
+            always: false,
+        }
+    }
+
+    /// With an amplitude within `range`, on a linear scale.
+    #[must_use]
+    pub fn amplitude(self, name: &str, unit: &str, range: (f64, f64), start: f64) -> Self {
+        self.parameter((name, unit), Role::Amplitude, range, Scale::Linear, start)
+    }
+
+    /// With a positive shape within `range`, on a logarithmic scale.
+    #[must_use]
+    pub fn shape(self, name: &str, unit: &str, range: (f64, f64), start: f64) -> Self {
+        self.parameter((name, unit), Role::Shape, range, Scale::Log, start)
+    }
+
+    fn parameter(
+        mut self,
+        (name, unit): (&str, &str),
+        role: Role,
+        (lower, upper): (f64, f64),
+        scale: Scale,
+        start: f64,
+    ) -> Self {
+        let (name, unit) = (name.to_owned(), unit.to_owned());
+        self.parameters.push(Parameter { name, unit, role, lower, upper, scale, start });
+        self
+    }
+
+    /// As part of every model.
+    #[must_use]
+    pub fn always(mut self) -> Self {
+        self.always = true;
+        self
+    }
+
     /// The key of a parameter in reports: `term.parameter`, or just the name where both are equal.
     pub fn key(&self, parameter: &Parameter) -> String {
         if self.name == parameter.name {

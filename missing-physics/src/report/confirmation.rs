@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Confirmation {
     /// The effect that the rung added; nothing on the base rung.
-    pub added: Option<String>,
+    pub added: Vec<String>,
     /// Every effect of the rung.
     pub effects: Vec<String>,
     /// Name of the error -> its size with the parameters as they were found, nothing fitted.

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, DetectionLimit};
 use super::confirmation::Confirmed;
 use super::decision::Decision;
 use super::diagnosis::Diagnosis;
@@ -17,7 +17,7 @@ use super::plot::Plot;
 use super::rung::Rung;
 use super::surrogates::Surrogates;
 use super::verdict::{Ambiguity, Budget, Verdict};
-use super::view::View;
+use super::view::{Disagreement, View};
 
 /// The whole result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,9 +65,9 @@ pub struct Discovery {
     pub surrogates: Option<Surrogates>,
     /// Size of the error that no model can remove, by quantity.
     pub noise_floor: BTreeMap<String, f64>,
-    /// Size of each effect that would have been seen, in words, by effect.
+    /// Size of each effect that would have been seen, by effect.
     #[serde(default)]
-    pub detection_limits: BTreeMap<String, String>,
+    pub detection_limits: BTreeMap<String, DetectionLimit>,
     /// Every comparison of two models, and what came of it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub decisions: Vec<Decision>,
@@ -77,6 +77,12 @@ pub struct Discovery {
     /// Effects that were not tried because time ran out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub untried: Vec<String>,
+    /// Whether the search was cut before its end: what is told is what was found until then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
+    /// Views of the error that contradict an effect that was added.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disagreements: Vec<Disagreement>,
     /// Seed of every random choice.
     pub seed: u64,
     /// Time taken, s.

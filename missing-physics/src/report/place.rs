@@ -2,6 +2,37 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::measurement::quantity::quantity;
+
+/// What a dependence of the error looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Pattern {
+    /// The bin with the largest mean error.
+    Mean {
+        /// Mean error in it.
+        error: f64,
+        /// Mean of the coordinate in it.
+        at: f64,
+        /// True where the error counts as positive when it opposes the motion.
+        against_motion: bool,
+    },
+    /// The mean changes once.
+    Step {
+        /// By this much.
+        height: f64,
+        /// At this time, s.
+        time: f64,
+    },
+    /// It swings.
+    Sine {
+        /// With this amplitude.
+        amplitude: f64,
+        /// With this period, s.
+        period: f64,
+    },
+}
+
 /// Where the model fails: one regime or coordinate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Where {
@@ -11,8 +42,45 @@ pub struct Where {
     pub share: f64,
     /// Chance of as strong a dependence on the coordinate where there is none.
     pub p_value: f64,
-    /// In words.
-    pub note: String,
+    /// Unit of the coordinate.
+    #[serde(default)]
+    pub unit: String,
+    /// Unit of the error.
+    #[serde(default)]
+    pub error_unit: String,
+    /// What the dependence looks like; nothing where nothing is there.
+    #[serde(default)]
+    pub pattern: Option<Pattern>,
+}
+
+impl Where {
+    /// What the dependence looks like, for a summary: `largest mean error +2.00 N near 3.00 mm`. Nothing takes it apart.
+    pub fn in_words(&self) -> String {
+        let (of_error, of_place) = (&self.error_unit, &self.unit);
+        match self.pattern {
+            None => String::new(),
+            Some(Pattern::Mean { .. }) => format!("largest mean error {}", self.largest()),
+            Some(Pattern::Step { height, time }) => {
+                format!("a step of {height:+.3} {of_error} at {time:.2} {of_place}")
+            }
+            Some(Pattern::Sine { amplitude, period }) => {
+                let (amplitude, period) =
+                    (quantity(amplitude, of_error), quantity(period, of_place));
+                format!("a swing of {amplitude} with a period of {period}")
+            }
+        }
+    }
+
+    /// The same without what it is, where a heading says that.
+    pub fn largest(&self) -> String {
+        let Some(Pattern::Mean { error, at, against_motion }) = self.pattern else {
+            return self.in_words();
+        };
+        let opposes = if against_motion { " against the motion" } else { "" };
+        let sign = if error > 0.0 { "+" } else { "" };
+        let (size, place) = (quantity(error, &self.error_unit), quantity(at, &self.unit));
+        format!("{sign}{size}{opposes} near {place}")
+    }
 }
 
 /// Share of the error, or of the missing force, in one regime of the experiment; regimes do not overlap.

@@ -30,18 +30,67 @@ pub struct SplitError {
     pub validation: f64,
 }
 
+/// An error of a model, with what is compared.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedError {
+    /// What is compared, e.g. `force` or `window`.
+    pub quantity: String,
+    /// SI unit; nothing for a fraction of the quantity's own size.
+    pub unit: Option<String>,
+    /// On the blocks used for fitting.
+    pub fit: f64,
+    /// On the held-out blocks.
+    pub validation: f64,
+}
+
+impl NamedError {
+    /// An error in a unit.
+    pub fn absolute(quantity: &str, unit: &str, error: SplitError) -> Self {
+        let SplitError { fit, validation } = error;
+        Self { quantity: quantity.to_owned(), unit: Some(unit.to_owned()), fit, validation }
+    }
+
+    /// An error as a fraction.
+    pub fn relative(quantity: &str, error: SplitError) -> Self {
+        let SplitError { fit, validation } = error;
+        Self { quantity: quantity.to_owned(), unit: None, fit, validation }
+    }
+
+    /// Its name in maps: `force_rms_N`, `force_relative`. Made, never taken apart.
+    pub fn key(&self) -> String {
+        match &self.unit {
+            Some(unit) => format!("{}_rms_{unit}", self.quantity),
+            None => relative_key(&self.quantity),
+        }
+    }
+
+    /// The two numbers.
+    pub fn size(&self) -> SplitError {
+        SplitError { fit: self.fit, validation: self.validation }
+    }
+}
+
+/// Key of the relative error of a quantity.
+pub fn relative_key(quantity: &str) -> String {
+    format!("{quantity}_relative")
+}
+
+/// Key of the noise floor of a quantity in a unit.
+pub fn floor_key(quantity: &str, unit: &str) -> String {
+    format!("{quantity}_{unit}")
+}
+
 /// One rung of the ladder: a structure, its parameters, its errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rung {
-    /// The effect added on this rung (several, joined with `+`, where they only help together);
-    /// nothing on the base rung.
-    pub added: Option<String>,
+    /// The effect added on this rung; several where they only help together, none on the base rung.
+    pub added: Vec<String>,
     /// Every effect of the model on this rung.
     pub effects: Vec<String>,
     /// `effect.parameter` -> estimate.
     pub parameters: BTreeMap<String, Estimate>,
-    /// Name of the error -> its size on fitted and held-out data.
-    pub error: BTreeMap<String, SplitError>,
+    /// [`NamedError::key`] -> the error.
+    pub error: BTreeMap<String, NamedError>,
     /// Chance that a term with no part in the data gains as much; nothing on the base rung.
     pub p_value: Option<f64>,
     /// The error of the compared quantity in its usual measures.

@@ -6,7 +6,6 @@
 
 use std::f64::consts::TAU;
 
-use crate::measurement::quantity::quantity;
 use crate::statistics::basis::dot;
 
 /// Number of trial frequencies, half a line width apart.
@@ -31,19 +30,6 @@ pub enum Structure {
         /// Amplitude.
         amplitude: f64,
     },
-}
-
-impl Structure {
-    /// In words; `unit` is that of the residual.
-    pub fn words(&self, unit: &str) -> String {
-        match self {
-            Self::Step { time, height } => format!("a step of {height:+.3} {unit} at {time:.2} s"),
-            Self::Sine { period, amplitude } => {
-                let (amplitude, period) = (quantity(*amplitude, unit), quantity(*period, "s"));
-                format!("a swing of {amplitude} with a period of {period}")
-            }
-        }
-    }
 }
 
 /// Trial sines for one grid of times.

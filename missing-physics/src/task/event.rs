@@ -39,10 +39,10 @@ pub enum Event<'a> {
         /// Held-out log-likelihood gained, nats.
         nats: f64,
     },
-    /// An effect was added.
+    /// An effect was added, or several that only help together.
     Added {
-        /// Name of the effect.
-        effect: &'a str,
+        /// Names of the effects.
+        effects: &'a [String],
         /// Relative error on held-out data before.
         before: f64,
         /// Relative error on held-out data after.
