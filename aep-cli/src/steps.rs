@@ -5,14 +5,11 @@ use std::path::Path;
 use aep_core::{Aep, MetaEp, Method};
 use friction_ident::Model;
 use friction_ident::family::{FrictionFamily, Options};
-use missing_physics::diagnosis::where_it_fails::{View, coordinates, regimes};
-use missing_physics::diagnosis::{self, errors, noise};
-use missing_physics::fit::{self, Fit, uncertainty};
-use missing_physics::measurement::check::cut_at_gaps;
-use missing_physics::report::{Rung, SplitMetrics, Verdict, floor_key};
-use missing_physics::statistics::split::Split;
-use missing_physics::statistics::weights;
-use missing_physics::{Coordinate, Discovery, Fitted, ModelFamily, Recording, terms};
+use missing_physics::diagnosis::fitted_blocks;
+use missing_physics::fit::{self, Fit};
+use missing_physics::measurement::cut_at_gaps;
+use missing_physics::report::Rung;
+use missing_physics::{Recording, model_of, terms};
 
 use crate::args::library;
 use crate::failure::Failure;
@@ -53,14 +50,6 @@ pub fn read_model(path: &Path) -> Result<Model, Failure> {
     Model::from_json(&text, &library()).map_err(|error| Failure::from(error).in_file(path))
 }
 
-/// The blocks of a family that are fitted, as weights, and the split they come from.
-fn split(family: &FrictionFamily) -> (Split, Vec<f64>) {
-    let points = family.target().len();
-    let split = Split::new(points, family.blocks());
-    let fitted = split.fit(points).into_iter().map(|fit| f64::from(u8::from(fit))).collect();
-    (split, fitted)
-}
-
 /// Identifies a model of these effects on the fitted blocks; once `watch` is over the best one so far is
 /// taken.
 pub fn identify(
@@ -70,9 +59,8 @@ pub fn identify(
     watch: Watch,
 ) -> Result<(Fit, usize), Failure> {
     let terms = terms(family, effects)?;
-    let (_, fitted) = split(family);
     let method = Stoppable { method, watch };
-    let found = fit::identify_by(family, &terms, &fitted, seed, &method);
+    let found = fit::identify_by(family, &terms, &fitted_blocks(family), seed, &method);
     Ok((found.fit, found.evaluations))
 }
 
@@ -112,97 +100,7 @@ pub fn other_axis() -> Failure {
     Failure::bad_input(what).with_hint("identify a model on this data with 'aep identify'")
 }
 
-/// A fit as a rung: its parameters and errors.
-pub fn rung(family: &FrictionFamily, fit: &Fit, added: &[String]) -> Rung {
-    let (split, fitted) = split(family);
-    let effects = fit.model.terms.iter().map(|&term| &family.terms()[term]);
-    Rung {
-        added: added.to_vec(),
-        effects: effects.filter(|term| !term.always).map(|term| term.name.clone()).collect(),
-        parameters: uncertainty::estimates(family, fit, &fitted),
-        error: errors(family, fit, &split),
-        p_value: None,
-        metrics: Some(SplitMetrics::of(&fit.residual, family.target(), &split)),
-        likelihood_gain: None,
-        budget: None,
-    }
-}
-
-/// What a fit looks like on this data, as a discovery that looks for nothing: errors, where it
-/// fails, noise, curves. Once `watch` is over the parts that take long are left out.
-pub fn comparison(
-    family: &FrictionFamily,
-    (base, last): (&Fit, &Fit),
-    rungs: Vec<Rung>,
-    seed: u64,
-    watch: Watch,
-) -> Discovery {
-    let motion = family.motion();
-    let view = |fit: &Fit| {
-        if watch.is_over() {
-            return Vec::new();
-        }
-        let weights = weights(family.doubt(), &fit.residual);
-        coordinates(
-            family,
-            &View { residual: &fit.residual, weights: &weights, motion: &motion, seed },
-        )
-    };
-    let quantity = family.quantity();
-    let state: Vec<Coordinate> = family.coordinates().iter().filter(|c| c.state).cloned().collect();
-    let mut noise_floor = family.noise();
-    let floor = noise::floor(&last.residual, &state);
-    noise_floor.insert(floor_key(&quantity.name, &quantity.unit), floor);
-    let mut discovery = Discovery {
-        verdict: Verdict::NothingMissing,
-        summary: String::new(),
-        added: rungs.iter().flat_map(|rung| rung.added.clone()).collect(),
-        ladder: rungs,
-        ranking: Vec::new(),
-        where_it_fails: view(last),
-        where_base: view(base),
-        regimes: regimes(family, &last.residual),
-        regimes_base: regimes(family, &base.residual),
-        missing_force: None,
-        missing_force_base: None,
-        ambiguous: Vec::new(),
-        generic_term: None,
-        noise_floor,
-        detection_limits: std::collections::BTreeMap::new(),
-        decisions: Vec::new(),
-        budget: None,
-        untried: Vec::new(),
-        stopped: false,
-        disagreements: Vec::new(),
-        seed,
-        wall_s: 0.0,
-        notes: Vec::new(),
-        diagnosis: None,
-        diagnosis_base: None,
-        views: Vec::new(),
-        confirmation: None,
-        surrogates: None,
-        plots: family.plots(&base.model, &last.model),
-    };
-    if !watch.is_over() {
-        diagnosis::attach(family, base, last, seed, &mut discovery);
-    }
-    if watch.is_over() {
-        discovery.stopped = true;
-    }
-    discovery
-}
-
 /// The plant that a rung describes.
 pub fn model(family: &FrictionFamily, rung: &Rung) -> Result<Model, Failure> {
-    let indices = terms(family, &rung.effects)?;
-    let values = indices.iter().flat_map(|&index| {
-        let term = &family.terms()[index];
-        term.parameters.iter().map(|parameter| {
-            let start = parameter.start;
-            rung.parameters.get(&term.key(parameter)).map_or(start, |estimate| estimate.value)
-        })
-    });
-    let values = values.collect();
-    Ok(family.model(&Fitted { terms: indices, values })?)
+    Ok(family.model(&model_of(family, rung)?)?)
 }

@@ -24,10 +24,12 @@ use crate::windows::{WindowError, WindowOptions};
 mod free_run;
 mod intervals;
 mod refine;
+mod several;
 mod windowed;
 
 pub use aep_core::Refined;
 pub use intervals::{Interval, intervals, intervals_over};
+pub use several::Searched;
 
 use free_run::FreeRun;
 use windowed::Windowed;

@@ -40,7 +40,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut measured = vec![0.0; input.len()];
     level(&input, [0.05, 0.04], [10.0, 0.0, 1e-9], &mut measured);
     let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
-    measured.iter_mut().for_each(|y| *y = 1.02 * *y + 0.05 * noise());
+    for y in &mut measured {
+        *y = 1.02 * *y + 0.05 * noise();
+    }
 
     let holes = Term::new("holes", "two holes", "g y").amplitude("g", "1", (0.5, 2.0), 1.0);
     let holes = holes.shape("a", "cm^0.5/s", (0.01, 0.2), 0.05);
@@ -57,7 +59,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let Some(&[gain, a, b]) = given.of("holes") else { return };
         let others = [one("overflow", f64::INFINITY), one("leak", 0.0), one("pump-lag", 1e-9)];
         level(&input, [a, b], others, out);
-        out.iter_mut().for_each(|y| *y = gain * *y + one("offset", 0.0));
+        for y in out {
+            *y = gain * *y + one("offset", 0.0);
+        }
     });
     let family = family.predicting("level", "cm");
     let family = family.along(Coordinate::of_state("pump", "V", input.clone()));

@@ -5,11 +5,11 @@ use crate::ahead::fit;
 use crate::ahead::node::Node;
 use crate::diagnosis;
 use crate::discover::suggest;
-use crate::family::{Ahead, Fitted, ModelFamily};
+use crate::family::{Ahead, ModelFamily};
 use crate::fit::as_given;
 use crate::report::{Candidate, Confirmation, NamedError, Rung};
 use crate::statistics::split::Split;
-use crate::task::{DiscoverError, Settings, terms};
+use crate::task::{DiscoverError, Settings, model_of};
 
 /// Steps of a fit on these recordings.
 const STEPS: usize = 10;
@@ -101,20 +101,6 @@ fn as_found<F: ModelFamily + ?Sized>(
         nats: None,
         place: None,
     })
-}
-
-/// The model of a rung as it was found.
-fn model_of<F: ModelFamily + ?Sized>(family: &F, rung: &Rung) -> Result<Fitted, DiscoverError> {
-    let indices = terms(family, &rung.effects)?;
-    let values = indices.iter().flat_map(|&index| {
-        let term = &family.terms()[index];
-        term.parameters.iter().map(|parameter| {
-            let found = rung.parameters.get(&term.key(parameter));
-            found.map_or(parameter.start, |estimate| estimate.value)
-        })
-    });
-    let values = values.collect();
-    Ok(Fitted { terms: indices, values })
 }
 
 /// What `added` gains on a model of `effects` that is identified on these recordings.

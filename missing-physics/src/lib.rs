@@ -19,8 +19,8 @@
 //! | [`fit`] | least squares of a model on the compared quantity, intervals |
 //! | [`family`] | the seam to a subject: [`ModelFamily`], [`Term`], [`family::Ahead`] |
 //! | [`statistics`] | residuals as numbers: surrogate data, spectra, tests, splits |
-//! | [`measurement`] | [`Recording`] and what is to be known of it before any model |
 //! | [`report`] | result types: a [`Discovery`] and its parts, the JSON contract |
+//! | [`measurement`] | [`Recording`] and what is to be known of it before any model |
 
 pub mod ahead;
 pub mod climb;
@@ -41,7 +41,7 @@ pub use family::{
 };
 pub use measurement::{Channel, Hold, Recording, RecordingError};
 pub use report::Discovery;
-pub use task::{DiscoverError, Event, Observer, Settings, Thresholds, terms};
+pub use task::{DiscoverError, Event, Observer, Settings, Thresholds, model_of, terms};
 
 /// The examples of the README, run as tests.
 #[cfg(doctest)]

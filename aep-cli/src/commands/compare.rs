@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use friction_ident::Model;
 use friction_ident::family::FrictionFamily;
-use missing_physics::Thresholds;
+use missing_physics::{Thresholds, diagnosis};
 use missing_physics::fit::Fit;
 use missing_physics::measurement::check::check;
 use missing_physics::report::View;
@@ -59,13 +59,13 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let Some(fit) = fits.first() else {
         return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
     };
-    let rung = steps::rung(&family, fit, &[]);
+    let rung = diagnosis::rung(&family, fit, &[]);
     let effects = rung.effects.join(" + ");
-    let mut discovery = steps::comparison(&family, (fit, fit), vec![rung], args.seed, watch);
+    let mut discovery = diagnosis::comparison(&family, (fit, fit), vec![rung], args.seed, &|| watch.is_over());
     let (views, mut notes) = side_by_side(&family, &args.model, &fits, watch)?;
     discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
     let warnings = output::warnings(&views, &notes);
-    notes.splice(0..0, missing_physics::diagnosis::views::disagreements(&views));
+    notes.splice(0..0, diagnosis::views::disagreements(&views));
     notes.append(&mut discovery.notes);
     let stopped = watch.is_over();
     discovery.stopped |= stopped;

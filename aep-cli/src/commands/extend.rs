@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use missing_physics::Thresholds;
+use missing_physics::{Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
 
 use crate::steps;
@@ -66,12 +66,12 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let method = steps::method("aep")?;
     let (after, _) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
     let rungs = vec![
-        steps::rung(&family, &before, &[]),
-        steps::rung(&family, &after, std::slice::from_ref(&added)),
+        diagnosis::rung(&family, &before, &[]),
+        diagnosis::rung(&family, &after, std::slice::from_ref(&added)),
     ];
     let last = rungs[1].clone();
     let extended = steps::model(&family, &last)?;
-    let discovery = steps::comparison(&family, (&before, &after), rungs, args.seed, watch);
+    let discovery = diagnosis::comparison(&family, (&before, &after), rungs, args.seed, &|| watch.is_over());
     drop(progress);
     let data = check(&loaded.recording);
     let report =

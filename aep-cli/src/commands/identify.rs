@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use friction_ident::family::FrictionFamily;
-use missing_physics::{Recording, Thresholds};
+use missing_physics::{Recording, Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
 
 use crate::app::Global;
@@ -74,7 +74,7 @@ fn in_time(
         files += &written("results", path);
     }
     if let Some(path) = &args.output {
-        output::save(path, &(found.model.to_json()? + "\n"))?;
+        output::save(path, &(found.found.model.to_json()? + "\n"))?;
         files += &written("model", path);
     }
     if quiet {
@@ -106,9 +106,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         return in_time(args, &loaded.recording, &family, &effects, (progress, quiet), watch);
     }
     let (fit, evaluations) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
-    let rung = steps::rung(&family, &fit, &[]);
+    let rung = diagnosis::rung(&family, &fit, &[]);
     let model = steps::model(&family, &rung)?;
-    let discovery = steps::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, watch);
+    let discovery = diagnosis::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, &|| watch.is_over());
     drop(progress);
     let data = check(&loaded.recording);
     let report =

@@ -2,20 +2,17 @@
 
 use aep_core::{Aep, Budget, MetaEp, Method};
 use friction_ident::family::FrictionFamily;
-use friction_ident::identify::{Interval, Refined, all_free};
-use friction_ident::{Free, Identification, Model, Quantity, intervals_over};
+use friction_ident::identify::{Interval, Searched, all_free};
+use friction_ident::{Free, Identification, Model, Quantity};
 use missing_physics::measurement::quantity::{number, quantity};
 use missing_physics::statistics::autocorrelation::interval;
-use missing_physics::{ModelFamily, Recording};
+use missing_physics::{ModelFamily, Recording, diagnosis};
 
-use super::{identify, method, model, rung};
+use super::{identify, method, model};
 use crate::args::{TimeTask, library};
 use crate::failure::Failure;
 use crate::output::{Align, Table, dim};
 use crate::stop::Watch;
-
-/// Searches of an identification by simulation: several valleys may fit as well.
-const SEARCHES: u64 = 3;
 
 /// Identifies a model of these effects by simulating it, from the values that the comparison of forces
 /// gives; stopped by Ctrl-C or the time limit it keeps what it has.
@@ -35,35 +32,9 @@ pub fn identify_in_time(
     if let Some(left) = watch.left() {
         problem = problem.with_time_limit(left);
     }
-    let mut found: Vec<Refined> = Vec::new();
-    for search in 0..SEARCHES {
-        if search > 0 && problem.is_stopped() {
-            break;
-        }
-        let method = sized(algorithm, task.population)?;
-        let budget = Budget::generations(task.generations);
-        let end = problem.run_from(&[problem.start()], &*method, budget, seed + search)?;
-        // Nothing was evaluated where there was no time at all.
-        let from = if end.position.is_empty() { problem.start() } else { end.position };
-        found.push(problem.refine_around(&from));
-    }
-    found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-    let best = found.first().ok_or_else(|| Failure::failed("nothing was found".to_owned()))?;
-    let model = problem.model(&best.position)?;
-    let optima: Vec<Vec<f64>> = found.iter().map(|found| found.position.clone()).collect();
-    // Intervals are refits as well; whoever stops wants to go.
-    let intervals =
-        if problem.is_stopped() { None } else { Some(intervals_over(&problem, &optima)) };
-    let errors = problem.errors(&best.position);
-    let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len().max(1) as f64).sqrt();
-    Ok(Simulated {
-        model,
-        free,
-        position: best.position.clone(),
-        intervals,
-        rms,
-        searches: found.len(),
-    })
+    let method = sized(algorithm, task.population)?;
+    let budget = Budget::generations(task.generations);
+    Ok(Simulated { found: problem.from_several_starts(&*method, &budget, seed)?, free })
 }
 
 /// Values from the comparison of forces; typical ones for effects that it cannot show.
@@ -79,7 +50,7 @@ fn first_guess(
         .cloned()
         .collect();
     let (fit, _) = identify(family, &shown, (&Aep::practical(), seed), watch)?;
-    let values = model(family, &rung(family, &fit, &[]))?;
+    let values = model(family, &diagnosis::rung(family, &fit, &[]))?;
     let mut model = Model::new(family.axis(), values.mass())?;
     for name in effects {
         model = model.with_effect(library().find(name)?)?;
@@ -101,25 +72,19 @@ fn sized(name: &str, population: usize) -> Result<Box<dyn Method<f64>>, Failure>
     })
 }
 
-/// What an identification by simulation found.
+/// What an identification by simulation found, to be told.
 pub struct Simulated {
-    /// The model.
-    pub model: Model,
+    /// Model, intervals and error.
+    pub found: Searched,
     free: Vec<Free>,
-    position: Vec<f64>,
-    /// None where it was stopped before.
-    intervals: Option<Vec<Interval>>,
-    /// Position error, m or rad rms.
-    rms: f64,
-    searches: usize,
 }
 
 impl Simulated {
     fn rows(&self) -> Vec<(&str, f64, &str, Option<&Interval>)> {
-        let rows = self.free.iter().zip(&self.position).enumerate();
+        let rows = self.free.iter().zip(&self.found.position).enumerate();
         rows.map(|(k, (free, value))| {
-            let unit = self.model.unit(&free.address).unwrap_or_default();
-            let interval = self.intervals.as_ref().and_then(|intervals| intervals.get(k));
+            let unit = self.found.model.unit(&free.address).unwrap_or_default();
+            let interval = self.found.intervals.as_ref().and_then(|intervals| intervals.get(k));
             (free.address.as_str(), *value, unit, interval)
         })
         .collect()
@@ -154,9 +119,12 @@ impl Simulated {
             };
             table.row([address.to_owned(), number(value), unit.to_owned(), interval]);
         }
-        let unit = self.model.axis().unit(Quantity::Length);
-        let end =
-            format!("{} searches, position error {} rms", self.searches, quantity(self.rms, unit));
+        let unit = self.found.model.axis().unit(Quantity::Length);
+        let end = format!(
+            "{} searches, position error {} rms",
+            self.found.searches,
+            quantity(self.found.rms, unit)
+        );
         format!("{}\n {}\n", table.text(), dim(&end))
     }
 
@@ -174,6 +142,6 @@ impl Simulated {
                 (address.to_owned(), entry)
             })
             .collect();
-        serde_json::json!({ "parameters": parameters, "position_rms": self.rms, "searches": self.searches })
+        serde_json::json!({ "parameters": parameters, "position_rms": self.found.rms, "searches": self.found.searches })
     }
 }

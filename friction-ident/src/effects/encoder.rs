@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{About, Effect, Parameter, Parameters, Sensor, Shown, Slot};
+use super::{About, Effect, Parameter, Parameters, Periodic, Repeats, Sensor, Shown, Slot};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -62,6 +62,11 @@ impl Effect for Encoder {
 
     fn sensor(&self) -> Option<&dyn Sensor> {
         Some(self)
+    }
+
+    fn periodic(&self) -> Option<Periodic> {
+        let (period, of) = ("p", Repeats::Sensor);
+        Some(Periodic { period, of, ranked: true, columns: None, shortest: None })
     }
 }
 

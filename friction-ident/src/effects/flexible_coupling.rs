@@ -5,7 +5,8 @@ mod friction;
 use std::f64::consts::TAU;
 
 use super::{
-    About, AsFound, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step,
+    About, AsFound, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot,
+    Step, Trials,
 };
 use crate::axis::Quantity;
 use crate::simd::add_to;
@@ -49,6 +50,15 @@ static ABOUT: About = About {
 impl Effect for FlexibleCoupling {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// A resonance is as narrow as its damping, so that the frequencies lie closer than other shapes.
+    fn trials(&self, parameter: &str) -> Option<Trials> {
+        Some(if parameter == "f" { Trials::Spread(40) } else { Trials::At(&[0.03, 0.1, 0.4]) })
+    }
+
+    fn few_trials(&self) -> Option<&'static [usize]> {
+        Some(&[12, 1])
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {

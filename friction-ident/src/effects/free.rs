@@ -158,6 +158,11 @@ impl Effect for FrictionStep {
         &STEP
     }
 
+    /// A step is narrow in time.
+    fn few_trials(&self) -> Option<&'static [usize]> {
+        Some(&[40])
+    }
+
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
         for (i, level) in level.iter_mut().enumerate() {
             let (begin, end) = (p.get(0)[i], p.get(1)[i]);

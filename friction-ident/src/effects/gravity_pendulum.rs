@@ -1,6 +1,6 @@
 //! Weight of a pendulum on a rotary axis.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth, Trials};
 use crate::axis::{Axis, Quantity};
 
 /// `M sin(q - q_0)`; `M` is mass times gravity times the distance of the centre of mass.
@@ -34,6 +34,11 @@ static ABOUT: About = About {
 impl Effect for GravityPendulum {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// Most pendulums hang at the zero of their encoder; a coarse grid passes it by.
+    fn trials(&self, _parameter: &str) -> Option<Trials> {
+        Some(Trials::Turn(32))
     }
 
     fn suits(&self, axis: Axis) -> bool {

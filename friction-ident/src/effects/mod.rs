@@ -13,6 +13,7 @@ mod library;
 mod load;
 mod memory;
 mod past;
+pub mod search;
 mod sensor;
 
 pub mod actuator_lag;
@@ -56,6 +57,7 @@ pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
 pub use memory::{Memory, Recalled, Taken};
 pub use past::Past;
+pub use search::{Periodic, Repeats, Trials};
 pub use sensor::{Sensor, Shown};
 
 /// A physical effect. Every hook adds to its output, lane by lane; all slices are equally long.
@@ -118,6 +120,28 @@ pub trait Effect: Sync + Send {
     /// is one.
     fn refused(&self, _found: &AsFound<'_>) -> Option<String> {
         None
+    }
+
+    /// How the law repeats itself along the stroke. Where an effect does not say, its law is asked: see
+    /// [`search::periodic`].
+    fn periodic(&self) -> Option<Periodic> {
+        None
+    }
+
+    /// What the shape called `parameter` is tried at where all trials are screened; nothing for the usual grid. An effect
+    /// says it for all of its shapes or for none.
+    fn trials(&self, _parameter: &str) -> Option<Trials> {
+        None
+    }
+
+    /// How many values each shape is tried at where a fit follows each trial; nothing for the usual numbers.
+    fn few_trials(&self) -> Option<&'static [usize]> {
+        None
+    }
+
+    /// Whether a motion can show it beside a mass that is not known: a gain of the motor scales all parameters alike.
+    fn is_determined(&self) -> bool {
+        true
     }
 
     /// Whether a comparison of forces along a measured motion can show it at all, apart from other forms of it.

@@ -24,6 +24,10 @@ impl Effect for MotorGain {
         &ABOUT
     }
 
+    fn is_determined(&self) -> bool {
+        false
+    }
+
     fn drive(&self) -> Option<&dyn Drive> {
         Some(self)
     }

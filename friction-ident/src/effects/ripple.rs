@@ -1,6 +1,6 @@
 //! Force ripple: periodic along the stroke, the same for both directions (screw, cogging).
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, Effect, Motion, Parameter, Parameters, Periodic, Repeats, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -28,6 +28,10 @@ const COUNT: usize = 6;
 const SHOWS: &str = "a line at 1/l in the residual's spectrum over position";
 const PERIOD: Parameter =
     Parameter::shape("l", "period: screw lead, pole pitch", Quantity::Length, (2e-4, 0.2), 5e-3);
+
+/// How a ripple repeats.
+const PERIODIC: Periodic =
+    Periodic { period: "l", of: Repeats::Force, ranked: true, columns: None, shortest: None };
 
 const fn sine(name: &'static str, default: f64) -> Parameter {
     Parameter::signed(name, "sine amplitude of harmonic k", Quantity::Force, 50.0, default)
@@ -103,6 +107,31 @@ static DIRECTION_ABOUT: About = About {
                 of either direction)",
 };
 
+/// Forces per unit of `a_1, b_1, a_2, b_2` of a ripple.
+fn two_columns(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
+    let column = |of: fn((f64, f64)) -> f64| wave.iter().map(|w| of(*w)).collect();
+    vec![
+        column(|(sin, _)| sin),
+        column(|(_, cos)| cos),
+        column(|(sin, cos)| 2.0 * sin * cos),
+        column(|(sin, _)| 1.0 - 2.0 * sin * sin),
+    ]
+}
+
+/// Forces per unit of `a_1 .. a_6, b_1 .. b_6` of a ripple of six harmonics.
+fn six_columns(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
+    let mut columns = vec![Vec::new(); 2 * COUNT];
+    for (sin, cos) in wave {
+        let (mut sin_k, mut cos_k) = (*sin, *cos);
+        for k in 0..COUNT {
+            columns[k].push(sin_k);
+            columns[COUNT + k].push(cos_k);
+            (sin_k, cos_k) = (sin_k * cos + cos_k * sin, cos_k * cos - sin_k * sin);
+        }
+    }
+    columns
+}
+
 impl Effect for Ripple {
     fn about(&self) -> &'static About {
         &ABOUT
@@ -110,6 +139,10 @@ impl Effect for Ripple {
 
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &FORMS
+    }
+
+    fn periodic(&self) -> Option<Periodic> {
+        Some(Periodic { ranked: true, columns: Some(two_columns), ..PERIODIC })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
@@ -122,6 +155,10 @@ impl Effect for Harmonics {
         &HARMONICS_ABOUT
     }
 
+    fn periodic(&self) -> Option<Periodic> {
+        Some(Periodic { ranked: false, columns: Some(six_columns), ..PERIODIC })
+    }
+
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
         six(p, m.position, out.force);
     }
@@ -130,6 +167,10 @@ impl Effect for Harmonics {
 impl Effect for Direction {
     fn about(&self) -> &'static About {
         &DIRECTION_ABOUT
+    }
+
+    fn periodic(&self) -> Option<Periodic> {
+        Some(Periodic { ranked: true, columns: None, ..PERIODIC })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

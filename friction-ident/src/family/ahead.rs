@@ -8,11 +8,10 @@ use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
 use crate::effects::free::{Free, RIVALS};
+use crate::effects::{Effect, Repeats};
 use crate::model::Model;
 use crate::predictor::{Predictor, Wave};
 
-/// Effects with a period along the stroke.
-const PERIODIC: [&str; 3] = ["ripple", "ripple:direction", "encoder"];
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
 const MOST_SAMPLES: usize = 8_000;
 /// Samples on which the trials of a term are ranked.
@@ -21,8 +20,6 @@ const RANKED_ON: usize = 3_000;
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
 const KEPT: usize = 4;
-/// Trial moments of a step.
-const MOMENTS: usize = 40;
 /// Fewest periods in a stroke: fewer are no ripple but a profile.
 const LEAST_PERIODS: f64 = 3.0;
 
@@ -98,7 +95,7 @@ impl FrictionFamily {
     /// Shapes of a term to begin with: a fit finds the rest of the way.
     fn few_shapes(&self, term: usize) -> Vec<Vec<f64>> {
         let about = &self.terms[term];
-        if PERIODIC.contains(&about.name.as_str()) {
+        if self.periodic(term).is_some_and(|law| law.ranked) {
             // A fit moves a period by more than the half of a line that lies between two of these.
             let longest = (self.stroke.1 - self.stroke.0) / LEAST_PERIODS;
             let short = |shape: &Vec<f64>| shape[0] <= longest;
@@ -106,14 +103,12 @@ impl FrictionFamily {
         }
         let shapes: Vec<&Parameter> =
             about.parameters.iter().filter(|p| p.role == Role::Shape).collect();
-        let counts: &[usize] = match shapes.len() {
-            1 if about.name == "friction-step" => &[MOMENTS],
+        let usual: &[usize] = match shapes.len() {
             1 => &[12],
-            2 if about.name == "flexible-coupling" => &[12, 1],
-            2 if about.name == "presliding:maxwell-slip" => &[6, 1],
             2 => &[6, 3],
             _ => &[5, 3, 2],
         };
+        let counts = self.effect(term).and_then(Effect::few_trials).unwrap_or(usual);
         shapes.iter().enumerate().fold(vec![Vec::new()], |points, (k, parameter)| {
             let line = inner(parameter, counts.get(k).copied().unwrap_or(1));
             let each = |point: &Vec<f64>| {
@@ -186,12 +181,14 @@ impl Ahead for View<'_> {
     }
 
     fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Columns> {
-        let name = self.family.terms[term].name.as_str();
-        if !PERIODIC.contains(&name) {
-            return None;
-        }
-        let wave = if name == "encoder" { Wave::Sensor } else { Wave::Force };
-        let period = |trial: &Trial| trial.model.values.last().copied().unwrap_or(1.0);
+        let law = self.family.periodic(term).filter(|law| law.ranked)?;
+        let wave = match law.of {
+            Repeats::Force => Wave::Force,
+            Repeats::Sensor => Wave::Sensor,
+        };
+        let parameters = &self.family.terms[term].parameters;
+        let from_end = parameters.iter().rev().position(|p| p.name == law.period)? + 1;
+        let period = |trial: &Trial| trial.model.values[trial.model.values.len() - from_end];
         let periods: Vec<f64> = trials.iter().map(period).collect();
         // The fundamental chooses the period; harmonics follow when it is looked at as it is.
         Some(self.ahead.responses(setting, wave, periods))

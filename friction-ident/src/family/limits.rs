@@ -5,7 +5,7 @@ use missing_physics::{Parameter, Role, Term};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Quantity};
-use crate::effects::{self, About};
+use crate::effects::{self, About, Effect, Periodic, Trials};
 use crate::signal::quantile;
 
 /// Most trial periods of a ripple: down to 1/280 of the stroke. Finer ones are not looked for.
@@ -189,20 +189,21 @@ fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
         || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
 }
 
-/// Trial frequencies of a coupling, and its trial damping ratios.
-const RESONANCES: usize = 40;
-const DAMPING: [f64; 3] = [0.03, 0.1, 0.4];
-
 /// Trial periods along the stroke within the limits of `term`, the shortest first: evenly in spatial
 /// frequency, a little less than a line width apart, up to the frequency that passes the comparison's
 /// bandwidth in slow motion.
-pub fn periods(prepared: &Prepared, stroke: (f64, f64), term: &Term) -> Vec<Vec<f64>> {
+pub fn periods(
+    prepared: &Prepared,
+    stroke: (f64, f64),
+    (term, law): (&Term, Periodic),
+) -> Vec<Vec<f64>> {
     let length = stroke.1 - stroke.0;
     let slow = quantile(&prepared.sample(&prepared.velocity), 0.1);
-    let longest = term.parameters.iter().find(|parameter| parameter.role == Role::Shape);
+    let longest = term.parameters.iter().find(|parameter| parameter.name == law.period);
     let lowest = (1.5 / length).max(longest.map_or(0.0, |period| 1.0 / period.upper));
     let passing = prepared.bandwidth / slow.max(prepared.rest_speed);
-    let highest = passing.min(lowest + LINE_WIDTH * MOST_PERIODS as f64 / length);
+    let finest = law.shortest.map_or(f64::INFINITY, |shortest| 1.0 / shortest);
+    let highest = passing.min(lowest + LINE_WIDTH * MOST_PERIODS as f64 / length).min(finest);
     let count = ((highest - lowest) * length / LINE_WIDTH).ceil().max(1.0) as usize;
     (0..=count)
         .rev()
@@ -210,32 +211,26 @@ pub fn periods(prepared: &Prepared, stroke: (f64, f64), term: &Term) -> Vec<Vec<
         .collect()
 }
 
-/// Trial frequencies and damping ratios of a coupling: a resonance is as narrow as its damping, so that
-/// the frequencies lie closer than other shapes.
-pub fn resonances(term: &Term) -> Vec<Vec<f64>> {
-    let frequency = term.parameters.iter().find(|parameter| parameter.name == "f");
-    let line = frequency.map(|f| missing_physics::family::shapes::spread(f, RESONANCES));
-    let both = |f: f64| DAMPING.iter().map(move |zeta| vec![f, *zeta]);
-    line.unwrap_or_default().into_iter().flat_map(both).collect()
-}
-
-/// Trial breakaway distances of a free contact, and its trial dampings.
-const DISTANCES: usize = 16;
-const BRISTLES: usize = 3;
-
-/// Trial shapes of a free contact: the elements share the level evenly at first, as a grid over all shares would be
-/// some thousand trials.
-pub fn free_contacts(term: &Term) -> Vec<Vec<f64>> {
-    let trials = |parameter: &Parameter| match parameter.name.as_str() {
-        "d" => missing_physics::family::shapes::spread(parameter, DISTANCES),
-        "sigma_1" => missing_physics::family::shapes::spread(parameter, BRISTLES),
-        _ => vec![0.0],
-    };
-    term.parameters.iter().fold(vec![Vec::new()], |points, parameter| {
-        let line = trials(parameter);
+/// Trial shapes of a term as its effect wants them: the product over its shapes, the last one fastest; nothing where it
+/// has no wish.
+pub fn trials(effect: &dyn Effect, term: &Term) -> Option<Vec<Vec<f64>>> {
+    let shapes = term.parameters.iter().filter(|parameter| parameter.role == Role::Shape);
+    let lines = shapes.map(|parameter| Some(line(effect.trials(&parameter.name)?, parameter)));
+    let lines = lines.collect::<Option<Vec<_>>>().filter(|lines| !lines.is_empty())?;
+    Some(lines.iter().fold(vec![Vec::new()], |points, line| {
         let longer = |point: &Vec<f64>| -> Vec<Vec<f64>> {
             line.iter().map(|value| [point.as_slice(), &[*value]].concat()).collect()
         };
         points.iter().flat_map(longer).collect()
-    })
+    }))
+}
+
+fn line(trials: Trials, parameter: &Parameter) -> Vec<f64> {
+    match trials {
+        Trials::Spread(count) => missing_physics::family::shapes::spread(parameter, count),
+        Trials::At(values) => values.to_vec(),
+        Trials::Turn(count) => (-count..=count)
+            .map(|k| std::f64::consts::PI * f64::from(k) / f64::from(count))
+            .collect(),
+    }
 }

@@ -38,14 +38,9 @@ pub use preparation::{PreparationError, Prepared};
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
 use crate::effects::free::{self, RIVALS, Span};
-use crate::effects::{Effect, Library, Slot};
+use crate::effects::{Effect, Library, Periodic, Repeats, Slot, search};
 use crate::model::{MASS, Model, ModelError, address};
 
-/// Effects that a comparison of forces cannot see: a gain of the motor scales all parameters alike
-/// and is known only where the mass is.
-const INVISIBLE: [&str; 1] = ["motor-gain"];
-/// Trial angles of a pendulum's rest on either side of the encoder's zero.
-const ANGLES: i32 = 32;
 /// What the lighter smoother does to the motion, as a multiple of what the heavier one does beyond it.
 const DOUBT: f64 = 1.0 / (preparation::SMOOTHER / preparation::HEAVIER - 1.0);
 
@@ -66,6 +61,8 @@ pub struct FrictionFamily {
     axis: Axis,
     library: Library,
     effects: Vec<&'static dyn Effect>,
+    /// How the law of each effect repeats itself.
+    periodic: Vec<Option<Periodic>>,
     terms: Vec<Term>,
     time: Vec<f64>,
     target: Vec<f64>,
@@ -122,6 +119,7 @@ impl FrictionFamily {
             recording: recording.clone(),
             axis,
             library: options.library.clone(),
+            periodic: effects.iter().map(|effect| search::periodic(*effect)).collect(),
             effects,
             terms,
             time: prepared.sample(&prepared.time),
@@ -286,6 +284,16 @@ impl FrictionFamily {
         (simple, doubt)
     }
 
+    /// The effect behind a term; nothing for the mass.
+    fn effect(&self, term: usize) -> Option<&'static dyn Effect> {
+        term.checked_sub(1).map(|index| self.effects[index])
+    }
+
+    /// How the law of a term repeats itself along the stroke.
+    fn periodic(&self, term: usize) -> Option<Periodic> {
+        term.checked_sub(1).and_then(|index| self.periodic[index])
+    }
+
     fn is_simple(&self, term: usize) -> bool {
         term > 0 && {
             let about = self.effects[term - 1].about();
@@ -326,23 +334,12 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
-        if self.terms[term].name == "gravity-pendulum" {
-            // Most pendulums hang at the zero of their encoder; a coarse grid passes it by.
-            return (-ANGLES..=ANGLES)
-                .map(|k| vec![std::f64::consts::PI * f64::from(k) / f64::from(ANGLES)])
-                .collect();
+        let about = &self.terms[term];
+        if let Some(law) = self.periodic(term) {
+            return limits::periods(&self.prepared, self.stroke, (about, law));
         }
-        let periodic = ["ripple", "ripple:harmonics", "ripple:direction", "encoder"];
-        if periodic.contains(&self.terms[term].name.as_str()) {
-            return limits::periods(&self.prepared, self.stroke, &self.terms[term]);
-        }
-        if self.terms[term].name == "flexible-coupling" {
-            return limits::resonances(&self.terms[term]);
-        }
-        if self.terms[term].name == "presliding:free" {
-            return limits::free_contacts(&self.terms[term]);
-        }
-        missing_physics::family::shapes::grid(&self.terms[term])
+        let trials = self.effect(term).and_then(|effect| limits::trials(effect, about));
+        trials.unwrap_or_else(|| missing_physics::family::shapes::grid(about))
     }
 
     fn columns(
@@ -352,7 +349,7 @@ impl ModelFamily for FrictionFamily {
         term: usize,
         shape: &[f64],
     ) -> Vec<Vec<f64>> {
-        if self.terms[term].name == "encoder" {
+        if self.periodic(term).is_some_and(|law| law.of == Repeats::Sensor) {
             return self.encoders(model, &[shape.to_vec()]).swap_remove(0);
         }
         let simple = model.terms.iter().skip(1).chain([&term]).all(|&term| self.is_simple(term));
@@ -382,10 +379,9 @@ impl ModelFamily for FrictionFamily {
         term: usize,
         shapes: &[Vec<f64>],
     ) -> Vec<Vec<Vec<f64>>> {
-        match self.terms[term].name.as_str() {
-            "ripple" => self.ripples(shapes),
-            "ripple:harmonics" => self.harmonics(shapes),
-            "encoder" => self.encoders(model, shapes),
+        match self.periodic(term) {
+            Some(Periodic { of: Repeats::Sensor, .. }) => self.encoders(model, shapes),
+            Some(Periodic { columns: Some(columns), .. }) => self.repeated(columns, shapes),
             _ => shapes
                 .par_iter()
                 .map(|shape| self.columns(model, prediction, term, shape))
@@ -425,7 +421,7 @@ impl ModelFamily for FrictionFamily {
             return false;
         };
         let name = effect.about().name;
-        if INVISIBLE.contains(&name) || RIVALS.iter().any(|free| free.effect.about().name == name) {
+        if !effect.is_determined() || RIVALS.iter().any(|free| free.effect.about().name == name) {
             return false;
         }
         self.model(model).and_then(|plant| plant.with_effect(effect)).is_ok()

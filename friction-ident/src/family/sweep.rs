@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::FrictionFamily;
 use crate::effects::encoder::feigned;
+use crate::effects::search::OfWave;
 
 /// Periods per sweep.
 const SWEEP: usize = 64;
@@ -33,45 +34,12 @@ impl Sweep {
     }
 }
 
-/// Forces per unit of `a_1, b_1, a_2, b_2` of a ripple.
-fn ripple(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
-    let column = |of: fn((f64, f64)) -> f64| wave.iter().map(|w| of(*w)).collect();
-    vec![
-        column(|(sin, _)| sin),
-        column(|(_, cos)| cos),
-        column(|(sin, cos)| 2.0 * sin * cos),
-        column(|(sin, _)| 1.0 - 2.0 * sin * sin),
-    ]
-}
-
-/// Harmonics of the form `ripple:harmonics`.
-const HARMONICS: usize = 6;
-
-/// Forces per unit of `a_1 .. a_6, b_1 .. b_6` of a ripple of six harmonics.
-fn harmonics(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
-    let mut columns = vec![Vec::new(); 2 * HARMONICS];
-    for (sin, cos) in wave {
-        let (mut sin_k, mut cos_k) = (*sin, *cos);
-        for k in 0..HARMONICS {
-            columns[k].push(sin_k);
-            columns[HARMONICS + k].push(cos_k);
-            (sin_k, cos_k) = (sin_k * cos + cos_k * sin, cos_k * cos - sin_k * sin);
-        }
-    }
-    columns
-}
-
 impl FrictionFamily {
-    /// Columns of ripples of these periods. A force that depends on position alone is the same with any
-    /// contact; what a drive does to it is a few degrees of phase, which the refinement after the
+    /// Columns of a force of these periods, from its sine and cosine. A force that depends on position alone is the same
+    /// with any contact; what a drive does to it is a few degrees of phase, which the refinement after the
     /// screening mends.
-    pub(super) fn ripples(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
-        self.sweep(periods, |_, wave| ripple(wave))
-    }
-
-    /// Columns of ripples of six harmonics, see [`FrictionFamily::ripples`].
-    pub(super) fn harmonics(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
-        self.sweep(periods, |_, wave| harmonics(wave))
+    pub(super) fn repeated(&self, columns: OfWave, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
+        self.sweep(periods, |_, wave| columns(wave))
     }
 
     /// Columns of encoders whose errors have these periods: the inertia of a motion that there is not. The
@@ -157,7 +125,7 @@ mod tests {
         let main = family.terms().iter().position(|term| term.name == "ripple").unwrap();
         assert_eq!(shapes.len(), family.shapes(main).len());
         let last = &shapes[shapes.len() - 2..];
-        let quick = family.harmonics(last);
+        let quick = family.columns_of_shapes(&model, &prediction, at, last);
         for (quick, shape) in quick.iter().zip(last) {
             let slow = family.columns(&model, &prediction, at, shape);
             assert_eq!(slow.len(), quick.len());

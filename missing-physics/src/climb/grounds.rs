@@ -29,3 +29,8 @@ pub struct Grounds<'a> {
     /// Views in which the last model leaves no more than the noise of the measurement may.
     pub within_noise: BTreeMap<String, NamedError>,
 }
+
+/// Errors by their keys.
+pub(super) fn by_key(errors: Vec<NamedError>) -> BTreeMap<String, NamedError> {
+    errors.into_iter().map(|error| (error.key(), error)).collect()
+}

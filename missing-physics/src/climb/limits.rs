@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::climb::grounds::{CONTRADICTION, Grounds};
+use crate::climb::grounds::{CONTRADICTION, Grounds, by_key};
 use crate::climb::screen::Screened;
-use crate::climb::views::by_key;
 use crate::family::shapes::{amplitudes, assemble};
 use crate::family::{Fitted, ModelFamily, Role, detection_limit};
 use crate::fit::moved;

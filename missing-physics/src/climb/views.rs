@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Search;
-use super::grounds::CONTRADICTION;
+use super::grounds::{CONTRADICTION, by_key};
 use crate::family::ModelFamily;
 use crate::fit::Fit;
 use crate::report::NamedError;
@@ -55,9 +55,4 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         });
         views
     }
-}
-
-/// Errors by their keys.
-pub(super) fn by_key(errors: Vec<NamedError>) -> BTreeMap<String, NamedError> {
-    errors.into_iter().map(|error| (error.key(), error)).collect()
 }

@@ -6,6 +6,6 @@ mod settings;
 mod thresholds;
 
 pub use event::{Event, Observer};
-pub use names::{DiscoverError, terms};
+pub use names::{DiscoverError, model_of, terms};
 pub use settings::Settings;
 pub use thresholds::Thresholds;

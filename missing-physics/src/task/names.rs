@@ -1,6 +1,7 @@
 //! Terms by the names that a user gives.
 
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
+use crate::report::Rung;
 
 /// Why a discovery cannot begin.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -37,4 +38,21 @@ pub fn terms<F: ModelFamily + ?Sized>(
         }
     }
     Ok(indices)
+}
+
+/// The model of a rung as it was found.
+///
+/// # Errors
+/// [`DiscoverError::UnknownTerm`] for an effect that the family does not have.
+pub fn model_of<F: ModelFamily + ?Sized>(family: &F, rung: &Rung) -> Result<Fitted, DiscoverError> {
+    let indices = terms(family, &rung.effects)?;
+    let values = indices.iter().flat_map(|&index| {
+        let term = &family.terms()[index];
+        term.parameters.iter().map(|parameter| {
+            let found = rung.parameters.get(&term.key(parameter));
+            found.map_or(parameter.start, |estimate| estimate.value)
+        })
+    });
+    let values = values.collect();
+    Ok(Fitted { terms: indices, values })
 }

@@ -3,7 +3,7 @@
 use super::{
     About, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS, Slot, Step,
 };
-use crate::effects::Leg;
+use crate::effects::{Leg, Trials};
 use crate::simd::{limited, vectorised};
 
 /// Number of elements.
@@ -49,6 +49,15 @@ static ABOUT: About = About {
 impl Effect for Free {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// The elements share the level evenly at first, as a grid over all shares would be some thousand trials.
+    fn trials(&self, parameter: &str) -> Option<Trials> {
+        Some(match parameter {
+            "d" => Trials::Spread(16),
+            "sigma_1" => Trials::Spread(3),
+            _ => Trials::At(&[0.0]),
+        })
     }
 
     fn element(&self) -> Option<&dyn Element> {

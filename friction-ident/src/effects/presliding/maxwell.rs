@@ -41,6 +41,10 @@ impl Effect for MaxwellSlip {
         &ABOUT
     }
 
+    fn few_trials(&self) -> Option<&'static [usize]> {
+        Some(&[6, 1])
+    }
+
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
     }

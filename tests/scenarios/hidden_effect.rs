@@ -1,0 +1,63 @@
+//! The whole loop: a plant with a hidden effect, a file, a discovery, a model that another simulation follows.
+
+use aep_data::{Mapping, load, to_csv};
+use friction_ident::family::{FrictionFamily, Options};
+use friction_ident::{Axis, Model};
+use missing_physics::report::Verdict;
+use missing_physics::{Discovery, Fitted, confirm, discover};
+
+use super::table::{among, plain, record};
+
+/// What is looked for, apart from what is there.
+const AMONG: [&str; 5] = ["stribeck", "asymmetry", "spring", "quadratic-drag", "drift"];
+
+fn from_file(plant: &Model) -> FrictionFamily {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.csv");
+    std::fs::write(&path, to_csv(&record(plant))).unwrap();
+    let recording = load(&path, &Mapping::default()).unwrap();
+    FrictionFamily::new(&recording, &Options::default()).unwrap()
+}
+
+fn searched(plant: &Model) -> (FrictionFamily, Discovery) {
+    let family = from_file(plant);
+    let found = discover(&family, &among(&family, &AMONG), &mut ()).unwrap();
+    (family, found)
+}
+
+#[test]
+fn what_was_hidden_is_named_with_its_size_and_holds_elsewhere() {
+    let cases: [(&str, &[(&str, f64)]); 2] =
+        [("spring", &[("k", 200.0)]), ("quadratic-drag", &[("c", 900.0)])];
+    for (effect, values) in cases {
+        let plant = plain().with(effect, values).unwrap();
+        let (family, found) = searched(&plant);
+        assert_eq!(found.added, [effect], "{}", found.summary);
+        let rung = found.ladder.last().unwrap();
+        assert_eq!(rung.added, [effect]);
+        let name = format!("{effect}.{}", values[0].0);
+        let estimate = &rung.parameters[&name];
+        assert!((estimate.value / values[0].1 - 1.0).abs() < 0.1, "{name}: {estimate:?}");
+        // The model of the last rung is a plant of its own: another recording of it is followed as well.
+        let indices = missing_physics::terms(&family, &rung.effects).unwrap();
+        let values: Vec<f64> = Fitted { terms: indices.clone(), values: Vec::new() }
+            .parameters(&family)
+            .map(|(term, parameter)| rung.parameters[&term.key(parameter)].value)
+            .collect();
+        let model = family.model(&Fitted { terms: indices, values }).unwrap();
+        assert_eq!(model.axis(), Axis::Linear);
+        let again = confirm(&from_file(&model), &found.ladder, &among(&family, &AMONG)).unwrap();
+        assert_eq!(again.last().unwrap().holds, Some(true), "{again:?}");
+    }
+}
+
+#[test]
+fn where_nothing_is_hidden_nothing_is_named() {
+    let (_, found) = searched(&plain());
+    assert_eq!(
+        (found.verdict, found.added.len()),
+        (Verdict::NothingMissing, 0),
+        "{}",
+        found.summary
+    );
+}

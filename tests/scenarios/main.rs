@@ -1,0 +1,7 @@
+//! What several crates do together.
+
+mod hidden_effect;
+mod model_file;
+mod own_effect;
+mod same_bits;
+mod table;
