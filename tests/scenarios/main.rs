@@ -4,4 +4,5 @@ mod hidden_effect;
 mod model_file;
 mod own_effect;
 mod same_bits;
+mod schema;
 mod table;

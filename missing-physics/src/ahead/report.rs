@@ -14,7 +14,7 @@ use super::fit::Fitter;
 use super::found::{Found, Ranked};
 use super::node::Node;
 use super::{Ahead, reading, scales};
-use crate::diagnosis::where_it_fails::{self, View};
+use crate::diagnosis::where_it_fails::{self, Look};
 use crate::diagnosis::{self, generic, noise};
 use crate::family::{Fitted, ModelFamily, detection_limit, sizes};
 use crate::fit::{self, Fit, uncertainty};
@@ -167,7 +167,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let places = |fit: &Fit| {
             let weights = weights(family.doubt(), &fit.residual);
             let seed = self.settings.seed;
-            let view = View { residual: &fit.residual, weights: &weights, motion: &motion, seed };
+            let view = Look { residual: &fit.residual, weights: &weights, motion: &motion, seed };
             where_it_fails::coordinates(family, &view)
         };
         let where_last = places(last_fit);

@@ -305,10 +305,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     fn where_it_fails(
         &self,
         residual: &[f64],
-        look: fn(&F, &where_it_fails::View<'_>) -> Vec<Where>,
+        look: fn(&F, &where_it_fails::Look<'_>) -> Vec<Where>,
     ) -> Vec<Where> {
         let weights = weights(self.family.doubt(), residual);
-        let view = where_it_fails::View {
+        let view = where_it_fails::Look {
             residual,
             weights: &weights,
             motion: &self.motion,

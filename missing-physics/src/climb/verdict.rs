@@ -198,3 +198,49 @@ pub fn report<F: ModelFamily + ?Sized>(
         plots: family.plots(&evidence.base.model, &evidence.last.model),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::SplitError;
+
+    /// A rung with these errors of the force and of a window, the same on fitted and held-out data.
+    fn rung(added: &[&str], force: f64, window: (f64, f64)) -> Rung {
+        let both = |fit: f64, validation: f64| SplitError { fit, validation };
+        let errors = [
+            NamedError::absolute("force", "N", both(force, force)),
+            NamedError::absolute("window", "m", both(window.0, window.1)),
+        ];
+        Rung {
+            added: added.iter().map(|name| (*name).to_owned()).collect(),
+            effects: Vec::new(),
+            parameters: std::collections::BTreeMap::new(),
+            error: errors.into_iter().map(|error| (error.key(), error)).collect(),
+            p_value: None,
+            metrics: None,
+            likelihood_gain: None,
+            budget: None,
+        }
+    }
+
+    #[test]
+    fn a_view_contradicts_where_it_grows_on_fitted_and_on_held_out_data() {
+        let base = rung(&[], 2.0, (1e-6, 1e-6));
+        let grown =
+            |window| contradictions(&[base.clone(), rung(&["drift"], 1.0, window)], "force");
+        let found = grown((1.2e-6, 1.1e-6));
+        assert_eq!((found[0].added[0].as_str(), found[0].view.as_str()), ("drift", "window"));
+        assert_eq!((found[0].before, found[0].after), (1e-6, 1.1e-6));
+        // A few windows, or a few per cent, are no contradiction.
+        assert!(grown((1.2e-6, 1e-6)).is_empty() && grown((1e-6, 1.2e-6)).is_empty());
+        assert!(grown((1.04e-6, 1.04e-6)).is_empty());
+    }
+
+    #[test]
+    fn the_compared_error_itself_is_no_other_view_and_without_an_effect_nothing_contradicts() {
+        let (base, window) = (rung(&[], 1.0, (1e-6, 1e-6)), (2e-6, 2e-6));
+        let worse = rung(&["drift"], 3.0, (1e-6, 1e-6));
+        assert!(contradictions(&[base.clone(), worse], "force").is_empty());
+        assert!(contradictions(&[base, rung(&[], 1.0, window)], "force").is_empty());
+    }
+}

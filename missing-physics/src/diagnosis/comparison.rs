@@ -1,6 +1,6 @@
 //! A given model on a recording: its errors and where it fails. Nothing is looked for.
 
-use super::where_it_fails::{View, coordinates, regimes};
+use super::where_it_fails::{Look, coordinates, regimes};
 use super::{attach, errors, noise};
 use crate::family::ModelFamily;
 use crate::fit::{Fit, uncertainty};
@@ -50,7 +50,7 @@ pub fn comparison<F: ModelFamily + ?Sized>(
             return Vec::new();
         }
         let weights = weights(family.doubt(), &fit.residual);
-        let view = View { residual: &fit.residual, weights: &weights, motion: &motion, seed };
+        let view = Look { residual: &fit.residual, weights: &weights, motion: &motion, seed };
         coordinates(family, &view)
     };
     let quantity = family.quantity();

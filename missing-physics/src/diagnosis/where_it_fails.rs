@@ -13,7 +13,7 @@ use crate::statistics::placebo;
 const PLACEBOS: usize = 199;
 
 /// Where in the recording the residual is looked at.
-pub struct View<'a> {
+pub struct Look<'a> {
     /// Target minus prediction.
     pub residual: &'a [f64],
     /// Weight of each point.
@@ -27,7 +27,7 @@ pub struct View<'a> {
 /// For every coordinate: the share of the squared error that a function of this coordinate alone
 /// would remove (a step for each of 20 bins of equally many points or of 100 of equal width, whichever is
 /// more after adjustment for their number), the chance of as much by accident, and where along the coordinate it is worst. Largest share first.
-pub fn coordinates<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where> {
+pub fn coordinates<F: ModelFamily + ?Sized>(family: &F, view: &Look<'_>) -> Vec<Where> {
     let points = view.residual.len();
     let shifts = placebo::rearrangements(points, PLACEBOS, view.motion, view.seed);
     let shuffles = placebo::shuffles(points, PLACEBOS, view.seed);
@@ -53,7 +53,7 @@ pub fn only_grows(coordinate: &Coordinate) -> bool {
 }
 
 /// Dependence on a coordinate of the motion.
-fn along(coordinate: &Coordinate, view: &View<'_>, orders: &[Vec<usize>], unit: &str) -> Where {
+fn along(coordinate: &Coordinate, view: &Look<'_>, orders: &[Vec<usize>], unit: &str) -> Where {
     let (coarse, fine) = (Bins::new(&coordinate.values), Bins::fine(&coordinate.values));
     let (share, p_value) =
         tested(coordinate, view, orders, |seen| coarse.explained(seen).max(fine.explained(seen)));
@@ -66,7 +66,7 @@ fn along(coordinate: &Coordinate, view: &View<'_>, orders: &[Vec<usize>], unit: 
 /// Dependence on a coordinate that only ever grows: time.
 fn along_time(
     coordinate: &Coordinate,
-    view: &View<'_>,
+    view: &Look<'_>,
     orders: &[Vec<usize>],
     unit: &str,
 ) -> Where {
@@ -83,7 +83,7 @@ fn along_time(
 /// A statistic of the residual and its p-value among those of the rearranged residual.
 fn tested(
     coordinate: &Coordinate,
-    view: &View<'_>,
+    view: &Look<'_>,
     orders: &[Vec<usize>],
     statistic: impl Fn(&[f64]) -> f64,
 ) -> (f64, f64) {
@@ -100,7 +100,7 @@ fn tested(
 }
 
 /// Only the coordinates that are, or behave like, time.
-pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &View<'_>) -> Vec<Where> {
+pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &Look<'_>) -> Vec<Where> {
     let shuffles = placebo::shuffles(view.residual.len(), PLACEBOS, view.seed);
     let unit = family.quantity().unit;
     family

@@ -1,5 +1,8 @@
 //! What a discovery found, as data: numbers, units and names, no computing. The bottom of the crate.
 
+/// The published schema of a [`Discovery`] in JSON (draft 2020-12), as `aep discover --json` writes it.
+pub const SCHEMA: &str = include_str!("../../schema/discovery.schema.json");
+
 mod candidate;
 mod confirmation;
 mod decision;

@@ -50,3 +50,22 @@ impl Default for Thresholds {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_asks_for_its_share_and_nothing_else_changes() {
+        let whole = Thresholds::default();
+        let part = whole.in_part(0.25);
+        assert_eq!(part, Thresholds { better: 20.0, ..whole });
+    }
+
+    #[test]
+    fn what_is_clear_grows_with_what_is_explained() {
+        let thresholds = Thresholds::default();
+        assert_eq!((thresholds.clear(100.0), thresholds.clear(4000.0)), (80.0, 80.0));
+        assert_eq!(thresholds.clear(10_000.0), 200.0);
+    }
+}
