@@ -33,6 +33,6 @@ fn a_discovery_is_what_the_published_schema_says() {
     more["surprise"] = 1.into();
     assert!(checked(&more).is_err());
     let mut words = json;
-    words["ladder"][1]["error"]["force_rms_N"]["fit"] = "3 N".into();
+    words["ladder"][0]["error"]["force_rms_N"]["fit"] = "3 N".into();
     assert!(checked(&words).is_err());
 }
