@@ -30,26 +30,31 @@ mod assemble;
 mod csv_table;
 mod enabled;
 mod error;
+mod expression;
 mod header;
 mod layouts;
 mod mapping;
 mod mat_index;
 mod mat_table;
+mod part;
 mod pick;
 mod reference;
 mod role;
 mod save;
 mod several;
 mod table;
+mod text;
 pub mod unit;
 mod write;
 
+use std::io::Read;
 use std::path::Path;
 
 pub use assemble::{Loaded, Origin};
 pub use error::{DataError, Problem};
 pub use layouts::{LAYOUTS, Layout};
-pub use mapping::{Mapping, Source, hold_name, parse_hold};
+pub use mapping::{Mapping, Source, column_channel, hold_name, parse_hold, regressor_channel};
+pub use part::{Part, part};
 pub use reference::{ReferencePath, read_reference};
 pub use role::{ALL as ROLES, Facts, Role};
 pub use save::{SaveError, save};
@@ -59,6 +64,9 @@ pub use write::{to_csv, to_csv_rounded, to_toml};
 use csv_table::CsvTable;
 use mat_table::MatTable;
 use missing_physics::Recording;
+
+/// The name of a file that stands for standard input.
+pub const STANDARD_INPUT: &str = "-";
 
 /// The recording in `path`, read by `mapping`, by `DATA.toml` beside it and by the columns' names,
 /// in this order.
@@ -76,6 +84,14 @@ pub fn load(path: &Path, mapping: &Mapping) -> Result<Recording, DataError> {
 pub fn read(path: &Path, mapping: &Mapping) -> Result<Loaded, DataError> {
     if path.is_dir() {
         return Err(DataError::new(path, Problem::Directory { files: data_files(path) }));
+    }
+    if path.as_os_str() == STANDARD_INPUT {
+        let (mut bytes, name) = (Vec::new(), Path::new("standard input"));
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .map_err(|error| DataError::new(name, unreadable(&error)))?;
+        return parse(name, bytes, mapping);
     }
     let bytes = std::fs::read(path).map_err(|error| DataError::new(path, unreadable(&error)))?;
     let mapping = mapping.or(&Mapping::beside(path)?);
@@ -100,7 +116,12 @@ pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, D
     if named_mat {
         return Err(DataError::new(path, Problem::NotMat));
     }
-    assemble::assemble(path, &CsvTable::parse(path, &bytes)?, mapping)
+    let bytes = text::decoded(&bytes).map_err(|problem| DataError::new(path, problem))?;
+    let table = match text::head(&bytes) {
+        Some(head) => CsvTable::parse(path, &head.bytes)?.with_units(&head.units),
+        None => CsvTable::parse(path, &bytes)?,
+    };
+    assemble::assemble(path, &table, mapping)
 }
 
 fn unreadable(error: &std::io::Error) -> Problem {

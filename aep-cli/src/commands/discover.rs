@@ -11,7 +11,7 @@ use missing_physics::report::Verdict;
 use missing_physics::{Discovery, discover};
 
 use crate::app::Global;
-use crate::args::{self, EffectNames, MappingArgs, OutputArgs, RunArgs};
+use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
@@ -34,9 +34,9 @@ pub struct Args {
     /// stand in DATA.toml beside it. Several files are pieces of one measurement
     #[arg(value_name = "DATA")]
     data: Vec<PathBuf>,
-    /// Effects of the model to begin with
-    #[arg(long, value_name = "EFFECTS", default_value = "coulomb,viscous,offset")]
-    base: EffectNames,
+    /// Effects of the model to begin with: coulomb,viscous,offset, or none beside --model-force
+    #[arg(long, value_name = "EFFECTS")]
+    base: Option<EffectNames>,
     /// Write the last model
     #[arg(long, short = 'o', value_name = "MODEL.json")]
     output: Option<PathBuf>,
@@ -60,6 +60,20 @@ pub struct Args {
     run: RunArgs,
     #[command(flatten)]
     mapping: MappingArgs,
+    #[command(flatten)]
+    known: KnownArgs,
+}
+
+impl Args {
+    /// The data, how they are read and what the base is, as they stand in a command.
+    fn words(&self) -> String {
+        let base = self.base.as_ref().map(|base| base.0.join(","));
+        args::words(&self.data)
+            + &self.mapping.words()
+            + &args::flag("base", base)
+            + &args::flag("bandwidth", self.bandwidth)
+            + &self.known.words()
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -76,8 +90,6 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let base = args.base.checked()?;
-    let settings = args.run.settings(base)?;
     let loaded = match args.data.as_slice() {
         [] => crate::example::load()?,
         paths => args.mapping.read_all(paths)?,
@@ -86,6 +98,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         [] => None,
         paths => Some(args.mapping.read_all(paths)?),
     };
+    let base = args.mapping.base(args.base.as_ref(), &loaded)?;
+    let settings = args.run.settings(base)?;
     let watch = Watch::new(None);
     let quiet = global.quiet || args.results.own_stdout();
     let data = check(&loaded.recording);
@@ -94,7 +108,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
     progress.say("fitting the base model");
     progress.within(settings.time_limit);
     let mut discovery = discover(&family, &settings, &mut progress)?;
@@ -104,7 +118,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let go_on = !watch.is_interrupted();
     if let Some(others) = others.as_ref().filter(|_| go_on) {
         progress.say("confirming it on the other recordings");
-        let other = steps::family(&others.recording, args.bandwidth)?.with_stroke_of(&family);
+        let other = steps::family(&others.recording, args.bandwidth, &args.known.known()?)?.with_stroke_of(&family);
         steps::same_axes(&family, &other)?;
         let rungs = missing_physics::confirm::on(&other, &discovery.ladder, &settings)?;
         let found = Confirmed { recording: others.recording.name().to_owned(), rungs };
@@ -112,11 +126,14 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         discovery.confirmation = Some(found);
     }
     let mut alarms = String::new();
+    if args.surrogates.is_some() || args.experiment.is_some() {
+        steps::needs_plant(&family)?;
+    }
     if let Some(count) = args.surrogates.filter(|_| go_on)
         && let Some(last) = discovery.ladder.last()
     {
         let model = steps::model(&family, last)?;
-        let options = steps::options(args.bandwidth);
+        let options = steps::options(args.bandwidth, &args.known.known()?);
         let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
             progress.say(format!("surrogate {} of {count}", k + 1));
@@ -219,12 +236,12 @@ fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> Strin
 
 fn next(given: &Args, discovery: &Discovery) -> String {
     if discovery.verdict == Verdict::Ambiguous && given.experiment.is_none() {
-        let command = format!("aep discover {} --experiment next.csv", args::words(&given.data));
+        let command = format!("aep discover {} --experiment next.csv", given.words());
         return format!("\n{}\n", output::dim(&format!("What to run next: {command}")));
     }
     if given.results.html.is_some() {
         return String::new();
     }
-    let command = format!("aep discover {} --html report.html", args::words(&given.data));
+    let command = format!("aep discover {} --html report.html", given.words());
     format!("\n{}\n", output::dim(&format!("All this with plots: {command}")))
 }

@@ -14,10 +14,12 @@ mod load;
 mod memory;
 mod past;
 mod sensor;
+mod signal;
 
 pub mod actuator_lag;
 pub mod asymmetry;
 pub mod backlash;
+pub mod beside;
 pub mod coulomb;
 pub mod drift;
 pub mod encoder;
@@ -33,6 +35,7 @@ pub mod offset;
 pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
+pub mod regressor;
 pub mod reversal_decay;
 pub mod ripple;
 pub mod rising_static_friction;
@@ -46,6 +49,8 @@ pub mod viscous_stroke;
 #[cfg(test)]
 mod testing;
 
+use missing_physics::Recording;
+
 use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
@@ -57,6 +62,7 @@ pub use library::{Library, UnknownEffect};
 pub use memory::{Memory, Recalled, Taken};
 pub use past::Past;
 pub use sensor::{Sensor, Shown};
+pub use signal::Signal;
 
 /// A physical effect. Every hook adds to its output, lane by lane; all slices are equally long.
 ///
@@ -117,6 +123,21 @@ pub trait Effect: Sync + Send {
     /// Why it is no such effect as it was fitted (a gap of no width), in words that go on after its name; nothing where it
     /// is one.
     fn refused(&self, _found: &AsFound<'_>) -> Option<String> {
+        None
+    }
+
+    /// Columns of the recording that its law reads.
+    fn columns(&self) -> &[String] {
+        &[]
+    }
+
+    /// Whether the columns that its law reads are known.
+    fn is_bound(&self) -> bool {
+        self.columns().is_empty()
+    }
+
+    /// The same effect with the columns of a recording that its law reads; nothing where it reads none.
+    fn bound(&self, _recording: &Recording) -> Option<&'static dyn Effect> {
         None
     }
 
