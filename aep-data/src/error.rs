@@ -126,6 +126,14 @@ pub enum Problem {
         /// The columns at that sample.
         with: String,
     },
+    /// A file of a known format that cannot be read.
+    #[error("the {format} cannot be read: {what}")]
+    Damaged {
+        /// The format.
+        format: &'static str,
+        /// What its reader says.
+        what: String,
+    },
     /// A regressor that is nothing.
     #[error("the regressor '{formula}' is 0 at every sample: no factor makes a force of it")]
     Nothing {
@@ -370,6 +378,7 @@ impl Problem {
                 let shown = text.split_once('\n').map_or("", |(_, shown)| shown);
                 format!("mend it at the mark; 'aep effects --formula' lists all functions\n{shown}")
             }
+            Self::Damaged { .. } => "write it once more, or as CSV with time_s,force_N,position_m".to_owned(),
             Self::Nothing { .. } => "check the formula, or leave it out".to_owned(),
             Self::NotFinite { .. } => {
                 "keep it within its domain, e.g. sqrt(max(0, x)) or log(max(1e-9, x)), or leave the row out".to_owned()

@@ -1,4 +1,4 @@
-//! Recordings from files: CSV and MATLAB v5, with column mapping, units and errors that say how to
+//! Recordings from files: CSV, MATLAB v5, NumPy, Parquet and Excel, with column mapping, units and errors that say how to
 //! mend them.
 //!
 //! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised
@@ -36,12 +36,16 @@ mod layouts;
 mod mapping;
 mod mat_index;
 mod mat_table;
+mod memory_table;
+mod npz;
+mod parquet_table;
 mod part;
 mod pick;
 mod reference;
 mod role;
 mod save;
 mod several;
+mod sheet;
 mod table;
 mod text;
 pub mod unit;
@@ -116,6 +120,13 @@ pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, D
     if named_mat {
         return Err(DataError::new(path, Problem::NotMat));
     }
+    if parquet_table::is_parquet(&bytes) {
+        return assemble::assemble(path, &parquet_table::read(path, bytes)?, mapping);
+    }
+    if npz::is_npz(&bytes) {
+        return assemble::assemble(path, &npz::read(path, &bytes)?, mapping);
+    }
+    let bytes = if sheet::is_xlsx(&bytes) { sheet::as_text(path, &bytes)? } else { bytes };
     let bytes = text::decoded(&bytes).map_err(|problem| DataError::new(path, problem))?;
     let table = match text::head(&bytes) {
         Some(head) => CsvTable::parse(path, &head.bytes)?.with_units(&head.units),
@@ -131,12 +142,15 @@ fn unreadable(error: &std::io::Error) -> Problem {
     }
 }
 
+/// Endings of files that are read.
+const FORMATS: [&str; 5] = ["csv", "mat", "parquet", "npz", "xlsx"];
+
 /// The files of a folder that could be recordings, sorted.
 fn data_files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
     let is_data = |path: &std::path::PathBuf| {
-        path.extension().is_some_and(|ending| ending == "csv" || ending == "mat")
+        path.extension().is_some_and(|ending| FORMATS.iter().any(|format| ending == *format))
     };
     let mut files: Vec<String> =
         paths.filter(is_data).map(|path| path.display().to_string()).collect();

@@ -6,7 +6,7 @@ use std::sync::{PoisonError, RwLock};
 use friction_ident::Library;
 use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::effects::formula;
-use friction_ident::effects::regressor::{regressor, regressors};
+use friction_ident::effects::regressor::{REFERENCE, regressor, regressors};
 use missing_physics::Recording;
 
 use super::shell::flag;
@@ -54,7 +54,12 @@ pub fn add_files(files: &[PathBuf]) -> Result<(), Failure> {
 pub fn add_regressors(recording: &Recording) -> Result<(), Failure> {
     let mut library = library();
     for name in regressors(recording) {
-        if library.find(name).is_err() {
+        let known = library.find(name).ok().map(|effect| effect.about().reference);
+        if known != Some(REFERENCE) {
+            if known == Some(formula::REFERENCE) {
+                let what = format!("'{name}' is both a regressor and an effect of your own");
+                return Err(Failure::bad_input(what).with_hint("call one of them by another name"));
+            }
             let effect =
                 regressor(name).map_err(|error| Failure::from_lines(&error.to_string()))?;
             library = library.with(effect);

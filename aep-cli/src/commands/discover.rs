@@ -29,8 +29,8 @@ use crate::stop::Watch;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
-    /// MATLAB v5/v7; without it, the example that comes with the program. Names, units and gains may also
+    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), MATLAB v5/v7, Parquet,
+    /// .npz, .xlsx, or `-` for standard input; without it, the example that comes with the program. Names, units and gains may also
     /// stand in DATA.toml beside it. Several files are pieces of one measurement
     #[arg(value_name = "DATA")]
     data: Vec<PathBuf>,
@@ -83,6 +83,7 @@ Examples:
   aep discover run.csv --base coulomb,viscous --json -   for scripts
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
+  aep discover run.csv --model-force tau_model           what your own model lacks
   aep discover run.csv --explain                         everything that was compared, and why
   aep discover run.csv --surrogates 20                   how often it would name what is not there
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next

@@ -54,7 +54,7 @@ static GAIN: About = About {
         low: -0.9,
         high: 9.0,
         scale: Scale::Linear,
-        default: 0.1,
+        default: 0.02,
     }],
     slots: &[Slot::SmoothForce],
     shows: "a residual proportional to the given force",

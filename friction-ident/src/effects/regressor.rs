@@ -7,6 +7,8 @@ use super::formula::{FormulaError, check_name};
 use super::{About, Effect, Parameter, Role, Scale, Signal, Slot};
 use crate::axis::Quantity;
 
+/// What regressors name as their source.
+pub const REFERENCE: &str = "a regressor of the user";
 /// Prefix of the channels of a recording that hold known regressors.
 pub const REGRESSOR: &str = "regressor ";
 
@@ -48,7 +50,7 @@ fn about(name: &'static str, most: f64, typical: f64) -> About {
         }]),
         slots: &[Slot::SmoothForce],
         shows: "a residual in proportion to the regressor",
-        reference: "a regressor of the user",
+        reference: REFERENCE,
     }
 }
 

@@ -46,8 +46,9 @@ const LEAST_OF_FORCE: f64 = 0.005;
 /// the noise. The recorded acceleration holds that noise, so that a least-squares fit takes part of it for less inertia:
 /// at most as much as there is.
 const LEAST_OF_NOISE: f64 = 1.0;
-/// Effects that cannot be told beside a given force: what the sensor shows is in that force already.
-pub(super) const UNSEEN: [&str; 1] = ["encoder"];
+/// Effects that cannot be told beside a given force: what the sensor shows is in that force already, and a lag of second
+/// order is a delay with what other people's filters make.
+pub(super) const UNSEEN: [&str; 2] = ["encoder", "actuator-lag:second-order"];
 /// Effects of which another model may have too much.
 const DEVIATIONS: [&str; 4] = ["coulomb", "viscous", "quadratic-drag", "spring"];
 /// What is said of how the recording was read.

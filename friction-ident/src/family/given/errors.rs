@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 use super::super::FrictionFamily;
 use super::super::ahead::rivals;
-use super::Given;
 use super::whitening::ORDERS;
+use super::{Given, UNSEEN};
 use crate::effects::Slot;
 
 /// Trial delays: the shortest and the longest in samples, and how many.
@@ -135,7 +135,8 @@ impl Ahead for View<'_> {
     }
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
-        self.family.in_flexible_form(model, term)
+        let is_unseen = |t: &usize| UNSEEN.contains(&self.family.terms()[*t].name.as_str());
+        self.family.in_flexible_form(model, term).filter(|model| !model.terms.iter().any(is_unseen))
     }
 
     fn variations(&self, model: &Fitted) -> Vec<Fitted> {
@@ -159,6 +160,6 @@ impl Ahead for View<'_> {
     }
 
     fn is_candidate(&self, term: usize) -> bool {
-        self.family.is_candidate(term)
+        self.family.is_candidate(term) && !UNSEEN.contains(&self.family.terms()[term].name.as_str())
     }
 }
