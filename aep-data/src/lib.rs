@@ -1,4 +1,4 @@
-//! Recordings from files: CSV, MATLAB v5, NumPy, Parquet and Excel, with column mapping, units and errors that say how to
+//! Recordings from files: CSV, MATLAB v5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
 //! mend them.
 //!
 //! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised

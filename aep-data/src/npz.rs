@@ -1,4 +1,4 @@
-//! NumPy: `.npz`, a ZIP archive of arrays; every vector is a column, every column of a matrix one more.
+//! Arrays of Python, `.npz`: a ZIP archive of arrays; every vector is a column, every column of a matrix one more.
 
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -85,8 +85,12 @@ fn array_of(bytes: &[u8]) -> Result<Columns, String> {
     Ok(Some((0..columns).map(column).collect()))
 }
 
-/// How numbers of a type are read, and how many bytes one has.
-fn reader(descr: &str) -> Option<(usize, fn(&[u8]) -> f64)> {
+/// How many bytes a number has, and how it is read.
+type Number = (usize, fn(&[u8]) -> f64);
+
+/// How numbers of a type are read.
+#[expect(clippy::cast_lossless, reason = "one macro for all widths")]
+fn reader(descr: &str) -> Option<Number> {
     macro_rules! read {
         ($kind:ty, $from:ident) => {
             (size_of::<$kind>(), |bytes: &[u8]| {

@@ -1,4 +1,4 @@
-//! Parquet, as LeRobot and pandas write it: every numeric column is one, every entry of a list one more.
+//! Parquet, as `LeRobot` and pandas write it: every numeric column is one, every entry of a list one more.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -18,7 +18,7 @@ pub(crate) fn decoded(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Problem> {
     let units = bytes[2..].chunks_exact(2).map(|pair| read([pair[0], pair[1]]));
     let text: Result<String, _> = char::decode_utf16(units).collect();
     match text {
-        Ok(text) if bytes.len() % 2 == 0 => Ok(text.into_bytes().into()),
+        Ok(text) if bytes.len().is_multiple_of(2) => Ok(text.into_bytes().into()),
         _ => Err(Problem::NotText { what: "it begins as UTF-16, but is none" }),
     }
 }

@@ -19,7 +19,10 @@ enum Token {
 /// Signs, the longer ones first.
 const SIGNS: [&str; 18] =
     ["**", "<=", ">=", "==", "!=", "<", ">", "+", "-", "*", "/", "%", "^", "(", ")", ",", "{", "}"];
-const COMPARISONS: [(&str, fn(f64, f64) -> f64); 6] = [
+/// A sign and what it does.
+type Comparison = (&'static str, fn(f64, f64) -> f64);
+
+const COMPARISONS: [Comparison; 6] = [
     ("<", |a, b| f64::from(u8::from(a < b))),
     ("<=", |a, b| f64::from(u8::from(a <= b))),
     (">", |a, b| f64::from(u8::from(a > b))),
@@ -265,9 +268,8 @@ impl Parser<'_> {
         self.next += 1;
         match token {
             Token::Number(number) => self.steps.push(Step::Number(number)),
-            Token::Quoted(name) => self.name(name),
             Token::Name(name) if self.sign() == Some("(") => return self.call(&name, at, depth),
-            Token::Name(name) => self.name(name),
+            Token::Quoted(name) | Token::Name(name) => self.name(name),
             Token::Sign("(") => {
                 self.comparison(depth + 1)?;
                 if self.take(&[")"]).is_none() {

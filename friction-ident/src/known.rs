@@ -90,7 +90,7 @@ impl Known {
             check(&terms[term].parameters[k], address, *value)?;
         }
         for (address, (low, high)) in &self.bounds {
-            if !(low < high) {
+            if low.partial_cmp(high) != Some(std::cmp::Ordering::Less) {
                 let (address, low, high) = (address.clone(), *low, *high);
                 return Err(KnownError::Bounds { address, low, high });
             }
@@ -138,9 +138,7 @@ fn place(terms: &[Term], address: &str) -> Result<(usize, usize), KnownError> {
 fn check(parameter: &Parameter, address: &str, value: f64) -> Result<(), KnownError> {
     let need = if !value.is_finite() {
         "it must be finite"
-    } else if parameter.scale == aep_core::Scale::Log && value <= 0.0 {
-        "it must be above 0"
-    } else if parameter.lower > 0.0 && value <= 0.0 {
+    } else if (parameter.scale == aep_core::Scale::Log || parameter.lower > 0.0) && value <= 0.0 {
         "it must be above 0"
     } else if parameter.lower >= 0.0 && value < 0.0 {
         "it cannot be negative"

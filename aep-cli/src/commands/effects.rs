@@ -51,11 +51,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 }
 
 fn formula() -> String {
-    let functions: String = aep_formula::FUNCTIONS
-        .iter()
-        .filter(|function| !function.about.is_empty())
-        .map(|function| format!("  {}\n", function.about))
-        .collect();
+    let listed = aep_formula::FUNCTIONS.iter().filter(|function| !function.about.is_empty());
+    let functions: Vec<&str> = listed.map(|function| function.about).collect();
+    let functions = format!("  {}\n", functions.join("\n  "));
     let about = "\
 wherever a column is named:       duty*v_in_V, force_N - 9.81*m, `Motor force [N]`/2
 in an effect of your own:         x v a s t F (position, velocity, acceleration, sign of the velocity, time, force of

@@ -107,7 +107,7 @@ impl Effect for ModelGain {
     }
 
     fn bound(&self, recording: &Recording) -> Option<&'static dyn Effect> {
-        Tabled::keep(&GAIN, Signal::of(recording, MODEL_FORCE)?)
+        Some(Tabled::keep(&GAIN, Signal::of(recording, MODEL_FORCE)?))
     }
 }
 
@@ -164,8 +164,8 @@ pub(super) struct Tabled {
 }
 
 impl Tabled {
-    pub(super) fn keep(about: &'static About, signal: Signal) -> Option<&'static dyn Effect> {
-        Some(Box::leak(Box::new(Self { about, signal })))
+    pub(super) fn keep(about: &'static About, signal: Signal) -> &'static dyn Effect {
+        Box::leak(Box::new(Self { about, signal }))
     }
 }
 

@@ -431,9 +431,9 @@ mod tests {
         assert!(refused(&COGGING.replace("cogging", "stribeck")).contains("of the library"));
         assert!(refused(&COGGING.replace("cogging", "stribeck:free")).contains("no name"));
         assert!(refused(&COGGING.replace("cogging", "My Effect")).contains("no name"));
-        let many: String = (0..17)
-            .map(|k| format!("b{k} = {{ unit = \"1\", low = 0.0, high = 1.0, default = 0.5 }}\n"))
-            .collect();
+        let one =
+            |k: i32| format!("b{k} = {{ unit = \"1\", low = 0.0, high = 1.0, default = 0.5 }}");
+        let many = (0..17).map(one).collect::<Vec<String>>().join("\n");
         assert!(refused(&(COGGING.to_owned() + &many)).contains("19 parameters"));
         assert!(
             refused(&COGGING.replace("\"m\"", "\"furlong\"")).contains("unknown unit 'furlong'")

@@ -73,7 +73,7 @@ impl Effect for Regressor {
             return None;
         }
         let about = Box::leak(Box::new(about(self.about.name, 20.0 * typical, typical)));
-        Tabled::keep(about, signal)
+        Some(Tabled::keep(about, signal))
     }
 }
 

@@ -79,6 +79,10 @@ impl Given {
         let p = &family.prepared;
         let mut near = 0;
         let force: Vec<f64> = p.time.iter().map(|t| signal.at(*t, &mut near)).collect();
+        #[expect(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method is for one lifetime only"
+        )]
         let sliding = family.driven(|motion| motion.sliding());
         let columns = [&p.acceleration, &sliding, &p.velocity, &vec![1.0; p.time.len()]]
             .map(|column| p.compare(column));
@@ -114,7 +118,7 @@ impl Given {
     /// What is no effect as it was fitted: smaller than what filters and differentiation make of a force that lacks
     /// nothing, or no longer than the timing of samples.
     pub fn vanishes(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
-        self.too_small(family, model).or_else(|| self.too_short(family, model))
+        self.too_small(family, model).or_else(|| Self::too_short(family, model))
     }
 
     fn too_small(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
@@ -163,7 +167,7 @@ impl Given {
         })
     }
 
-    fn too_short(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+    fn too_short(family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
         let most = MOST_SHIFT * family.prepared.interval;
         model.terms.iter().enumerate().find_map(|(place, term)| {
             let about = family.effects[term.checked_sub(1)?].about();
