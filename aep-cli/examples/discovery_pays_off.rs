@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // Record, and look for what the base model lacks.
     let recording = record(&plant)?;
-    let options = Options { bandwidth: None, library: Library::builtin() };
+    let options = Options { bandwidth: None, library: Library::builtin(), ..Options::default() };
     let family = FrictionFamily::new(&recording, &options)?;
     let search = Search {
         base: ["coulomb", "viscous", "offset"].map(str::to_owned).to_vec(),

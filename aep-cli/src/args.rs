@@ -4,10 +4,14 @@ mod control;
 mod data;
 mod effects;
 mod horizon;
+mod known;
 mod run;
+mod shell;
 
 pub use control::{LoopArgs, ReferenceArgs};
 pub use data::{DataArgs, MappingArgs, words};
 pub use effects::{EffectNames, add_files, known, library};
 pub use horizon::{Compared, TimeArgs, TimeTask};
+pub use known::KnownArgs;
 pub use run::{LimitArgs, OutputArgs, RunArgs};
+pub use shell::flag;

@@ -3,8 +3,11 @@
 use std::path::Path;
 
 use aep_core::{Aep, MetaEp, Method};
-use friction_ident::Model;
+use friction_ident::effects::Effect;
+use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::family::{FrictionFamily, Options};
+use friction_ident::model::Timing;
+use friction_ident::{Axis, Known, Model};
 use missing_physics::diagnosis::fitted_blocks;
 use missing_physics::fit::{self, Fit};
 use missing_physics::measurement::cut_at_gaps;
@@ -30,14 +33,18 @@ pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
 
 /// The model family of a recording; nothing is interpolated over its long gaps.
-pub fn family(recording: &Recording, bandwidth: Option<f64>) -> Result<FrictionFamily, Failure> {
+pub fn family(
+    recording: &Recording,
+    bandwidth: Option<f64>,
+    known: &Known,
+) -> Result<FrictionFamily, Failure> {
     let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::new(&whole, &options(bandwidth))?)
+    Ok(FrictionFamily::new(&whole, &options(bandwidth, known))?)
 }
 
 /// How a recording is prepared.
-pub fn options(bandwidth: Option<f64>) -> Options {
-    Options { bandwidth, library: library() }
+pub fn options(bandwidth: Option<f64>, known: &Known) -> Options {
+    Options { bandwidth, library: library(), known: known.clone() }
 }
 
 /// Reads MODEL.json.
@@ -48,6 +55,54 @@ pub fn read_model(path: &Path) -> Result<Model, Failure> {
         )
     })?;
     Model::from_json(&text, &library()).map_err(|error| Failure::from(error).in_file(path))
+}
+
+/// Reads MODEL.json, or takes the force that the user's own model gives as it is.
+pub fn model_or_given(path: Option<&Path>, recording: &Recording) -> Result<Model, Failure> {
+    if let Some(path) = path {
+        return read_model(path);
+    }
+    if recording.channel(MODEL_FORCE).is_none() {
+        let hint = "say which one: --model MODEL.json, or the column of your own model: --model-force COLUMN";
+        return Err(Failure::bad_input("a model is needed").with_hint(hint));
+    }
+    let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
+    let axis = if rotary { Axis::Rotary } else { Axis::Linear };
+    Ok(Model::beside(axis, Timing::default())?)
+}
+
+/// Reads MODEL.json as something that can be simulated.
+pub fn read_plant(path: &Path) -> Result<Model, Failure> {
+    let model = read_model(path)?;
+    if model.timing().is_some() {
+        let what = "the model stands beside a force that another model gives: it has no mass and cannot be simulated";
+        return Err(Failure::bad_input(what).in_file(path).with_hint(
+            "identify a model of its own: 'aep identify DATA --effects coulomb,viscous,offset -o MODEL.json'",
+        ));
+    }
+    let read = model.terms().iter().find(|term| reads_recording(term.effect()));
+    if let Some(term) = read {
+        let what = format!(
+            "'{}' reads columns of a recording: it cannot be simulated without",
+            term.name()
+        );
+        return Err(Failure::bad_input(what).in_file(path).with_hint("leave it out of the model"));
+    }
+    Ok(model)
+}
+
+fn reads_recording(effect: &dyn Effect) -> bool {
+    !effect.columns().is_empty()
+}
+
+/// Refuses to simulate beside a force that another model gives.
+pub fn needs_plant(family: &FrictionFamily) -> Result<(), Failure> {
+    if !family.is_beside() {
+        return Ok(());
+    }
+    let what = "beside --model-force there is no mass of ours: its motion cannot be simulated";
+    Err(Failure::bad_input(what)
+        .with_hint("leave --model-force out, or compare forces (--horizon force)"))
 }
 
 /// Identifies a model of these effects on the fitted blocks; once `watch` is over the best one so far is
@@ -74,15 +129,30 @@ pub fn method(name: &str) -> Result<Box<dyn Method<f64>>, Failure> {
 /// A given model on this data, nothing fitted.
 pub fn as_given(family: &FrictionFamily, model: &Model) -> Result<Fit, Failure> {
     same_axis(family, model)?;
+    family.check(model)?;
     Ok(fit::as_given(family, family.fitted(model)?))
 }
 
 /// Refuses a model of a linear axis for rotary data and the other way round.
 pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> {
-    if model.axis() == family.axis() {
+    if model.axis() != family.axis() {
+        return Err(other_axis());
+    }
+    if model.timing().is_some() == family.is_beside() {
         return Ok(());
     }
-    Err(other_axis())
+    let (what, hint) = if family.is_beside() {
+        (
+            "the model has a mass of its own, but the data are read with --model-force",
+            "leave --model-force out, or make a model beside it: 'aep identify DATA --model-force COLUMN --effects offset'",
+        )
+    } else {
+        (
+            "the model stands beside a force that another model gives, but the data are read without it",
+            "say the column of that force: --model-force COLUMN",
+        )
+    };
+    Err(Failure::bad_input(what).with_hint(hint))
 }
 
 /// Refuses recordings of a linear axis next to those of a rotary one.

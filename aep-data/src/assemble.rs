@@ -6,8 +6,9 @@ use missing_physics::{Channel, Recording, RecordingError};
 
 use crate::enabled::switched_on;
 use crate::error::{DataError, Problem};
+use crate::expression::Expression;
 use crate::layouts::Layout;
-use crate::mapping::Mapping;
+use crate::mapping::{Mapping, column_channel, regressor_channel};
 use crate::pick::Pick;
 use crate::role::{self, Role};
 use crate::table::Table;
@@ -55,11 +56,40 @@ pub(crate) fn assemble(
     let mapping = layout.map_or_else(|| mapping.clone(), |known| mapping.or(&known.mapping()));
     let picks = picks(path, table, &mapping)?;
     let rotary = is_rotary(&picks).map_err(|problem| DataError::new(path, problem))?;
-    let (recording, switched_off) = recording(path, table, &mapping, &picks, rotary)?;
+    let extras = extras(path, table, &mapping)?;
+    let (recording, switched_off) = recording(path, table, &mapping, (&picks, &extras), rotary)?;
     let origins = picks.iter().map(|pick| origin(pick, rotary)).collect();
-    let used = |name: &String| picks.iter().any(|pick| pick.columns().any(|used| used == name));
+    let used = |name: &String| {
+        let beside = extras.iter().flat_map(|(_, expression)| expression.columns());
+        picks.iter().flat_map(Pick::columns).chain(beside).any(|used| used == name)
+    };
     let unused = names.iter().filter(|name| !used(name)).cloned().collect();
     Ok(Loaded { recording, origins, layout: layout.map(|known| known.name), unused, switched_off })
+}
+
+/// Channels beside those of roles: regressors, and columns for laws that read them.
+fn extras(
+    path: &Path,
+    table: &dyn Table,
+    mapping: &Mapping,
+) -> Result<Vec<(String, Expression)>, DataError> {
+    let names = table.names();
+    let regressors = mapping.regressors.iter().map(|(name, formula)| {
+        let role = format!("regressor '{name}'");
+        Expression::find(&role, formula, table).map(|found| (regressor_channel(name), found))
+    });
+    let mut columns: Vec<&String> = mapping.columns.iter().collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let columns = columns.into_iter().map(|name| {
+        // The name of a column, not a formula: a formula names the columns that it reads.
+        if !names.contains(name) {
+            return Err(table.missing("effect", Some(name)));
+        }
+        Expression::find("effect", name, table).map(|found| (column_channel(name), found))
+    });
+    let all: Result<Vec<_>, Problem> = regressors.chain(columns).collect();
+    all.map_err(|problem| DataError::new(path, problem))
 }
 
 fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>, DataError> {
@@ -82,14 +112,14 @@ fn unit(role: Role, rotary: bool) -> &'static str {
 
 fn origin(pick: &Pick, rotary: bool) -> Origin {
     let unit = unit(pick.role, rotary);
-    Origin { channel: pick.role.facts().name, column: pick.expression.clone(), unit }
+    Origin { channel: pick.role.facts().name, column: pick.expression.text.clone(), unit }
 }
 
 /// Whether the axis turns. Where no unit says so, it is linear.
 fn is_rotary(picks: &[Pick]) -> Result<bool, Problem> {
     let first = |wanted: bool| picks.iter().find(|pick| pick.is_rotary() == Some(wanted));
     let described =
-        |pick: &Pick, rotary| format!("'{}' in {}", pick.expression, unit(pick.role, rotary));
+        |pick: &Pick, rotary| format!("'{}' in {}", pick.expression.text, unit(pick.role, rotary));
     match (first(false), first(true)) {
         (Some(linear), Some(rotary)) => Err(Problem::MixedAxis {
             linear: described(linear, false),
@@ -103,7 +133,7 @@ fn recording(
     path: &Path,
     table: &dyn Table,
     mapping: &Mapping,
-    picks: &[Pick],
+    (picks, extras): (&[Pick], &[(String, Expression)]),
     rotary: bool,
 ) -> Result<(Recording, usize), DataError> {
     let mut time = None;
@@ -124,6 +154,27 @@ fn recording(
         }
     }
     let samples = channels.iter().map(|channel| channel.values.len()).max().unwrap_or(0);
+    for (channel, expression) in extras {
+        let mut values = expression.values(table, path)?;
+        if values.len() == 1 {
+            values = vec![values[0]; samples];
+        }
+        if values.len() != samples {
+            let (name, values) = (expression.text.clone(), values.len());
+            return Err(DataError::new(path, Problem::Length { name, values, samples }));
+        }
+        if channel.starts_with("regressor ") && values.iter().all(|value| *value == 0.0) {
+            let formula = expression.text.clone();
+            return Err(DataError::new(path, Problem::Nothing { formula }));
+        }
+        if let Some(sample) = values.iter().position(|value| value.abs() > LARGEST) {
+            let value = values[sample];
+            let problem = Problem::Implausible { role: "column", value, unit: "" };
+            let error = DataError::new(path, problem).at_sample(sample, table.line(sample));
+            return Err(error.in_column(&expression.text));
+        }
+        channels.push(Channel::new(channel, "", values));
+    }
     let time = times(time, mapping.interval_s, samples).map_err(|p| DataError::new(path, p))?;
     let segment = segment.unwrap_or_else(|| vec![0; time.len()]);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -161,7 +212,7 @@ fn check_size(
     };
     let (role, value) = (pick.role.facts().name, values[sample]);
     let error = DataError::new(path, Problem::Implausible { role, value, unit });
-    Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression))
+    Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression.text))
 }
 
 /// Refuses intervals that come of a wrong unit; one sample a segment has none.
@@ -201,7 +252,7 @@ fn whole(
     let broken = values.iter().position(|value| value.fract() != 0.0 || value.abs() > 1e15);
     if let Some(sample) = broken {
         let error = DataError::new(path, Problem::Segment { value: values[sample] });
-        return Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression));
+        return Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression.text));
     }
     Ok(values.iter().map(|&value| value as i64).collect())
 }
@@ -210,7 +261,7 @@ fn whole(
 fn located(error: RecordingError, picks: &[Pick], table: &dyn Table, path: &Path) -> DataError {
     let column = |channel: &str| {
         let pick = picks.iter().find(|pick| pick.role.facts().name == channel);
-        pick.map_or(channel, |pick| &pick.expression).to_owned()
+        pick.map_or(channel, |pick| &pick.expression.text).to_owned()
     };
     match error {
         RecordingError::TimeNotIncreasing { index, before, after } => {

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use csv::{ByteRecord, ReaderBuilder, Trim};
 
 use crate::error::{DataError, Problem};
+use crate::header::Header;
 use crate::table::{Bad, Column, Table, nearest};
+use crate::unit;
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
@@ -41,6 +43,17 @@ impl CsvTable {
             return Err(fail(Problem::HeaderOnly));
         }
         Ok(table)
+    }
+
+    /// The same with units that stand in a row of their own, for columns whose name says none.
+    pub fn with_units(mut self, units: &[String]) -> Self {
+        for (column, unit) in self.columns.iter_mut().zip(units) {
+            let header = Header::parse(&column.name);
+            if header.unit.is_none() && header.bracketed.is_none() && unit::find(unit).is_some() {
+                column.name = format!("{} [{unit}]", column.name);
+            }
+        }
+        self
     }
 
     fn check_header(&self, line: Option<u64>) -> Result<(), DataError> {
@@ -93,10 +106,15 @@ impl Table for CsvTable {
         self.lines.get(sample).copied()
     }
 
-    fn missing(&self, role: &'static str, column: Option<&str>) -> Problem {
+    fn missing(&self, role: &str, column: Option<&str>) -> Problem {
         let present = self.names();
         let nearest = nearest(column.unwrap_or(role), &present);
-        Problem::MissingColumn { role, column: column.map(str::to_owned), present, nearest }
+        Problem::MissingColumn {
+            role: role.to_owned(),
+            column: column.map(str::to_owned),
+            present,
+            nearest,
+        }
     }
 }
 

@@ -108,6 +108,38 @@ pub enum Problem {
     /// A header and nothing below it.
     #[error("the file has a header, but no data below it")]
     HeaderOnly,
+    /// A formula that cannot be read.
+    #[error("the formula of {role}: {}", .error.what)]
+    Formula {
+        /// What is read from it.
+        role: String,
+        /// What is wrong, and where.
+        error: aep_formula::FormulaError,
+    },
+    /// A formula that has no value at a sample.
+    #[error("the formula '{formula}' is {value} here: {with}")]
+    NotFinite {
+        /// The formula.
+        formula: String,
+        /// Its value.
+        value: f64,
+        /// The columns at that sample.
+        with: String,
+    },
+    /// A file of a known format that cannot be read.
+    #[error("the {format} cannot be read: {what}")]
+    Damaged {
+        /// The format.
+        format: &'static str,
+        /// What its reader says.
+        what: String,
+    },
+    /// A regressor that is nothing.
+    #[error("the regressor '{formula}' is 0 at every sample: no factor makes a force of it")]
+    Nothing {
+        /// Its formula.
+        formula: String,
+    },
     /// Numbers from the first line on.
     #[error("the file has no header: its first line holds only numbers")]
     NoHeader {
@@ -144,7 +176,7 @@ pub enum Problem {
     #[error("no column for the {role}{}; the file has: {}", wanted(.column.as_deref()), listed(.present))]
     MissingColumn {
         /// What it is needed for.
-        role: &'static str,
+        role: String,
         /// The name asked for, where one was.
         column: Option<String>,
         /// The names there are.
@@ -156,7 +188,7 @@ pub enum Problem {
     #[error("no variable for the {role}{}; the file has: {}", wanted(.column.as_deref()), listed(.present))]
     MissingVariable {
         /// What it is needed for.
-        role: &'static str,
+        role: String,
         /// The name asked for, where one was.
         column: Option<String>,
         /// The variables there are, with class and size.
@@ -341,6 +373,16 @@ impl Problem {
             }
             Self::Directory { files } => format!("give one of its files: {}", listed(files)),
             Self::Unreadable { .. } => "check the permissions of the file".to_owned(),
+            Self::Formula { error, .. } => {
+                let text = error.to_string();
+                let shown = text.split_once('\n').map_or("", |(_, shown)| shown);
+                format!("mend it at the mark; 'aep effects --formula' lists all functions\n{shown}")
+            }
+            Self::Damaged { .. } => "write it once more, or as CSV with time_s,force_N,position_m".to_owned(),
+            Self::Nothing { .. } => "check the formula, or leave it out".to_owned(),
+            Self::NotFinite { .. } => {
+                "keep it within its domain, e.g. sqrt(max(0, x)) or log(max(1e-9, x)), or leave the row out".to_owned()
+            }
             Self::Empty | Self::HeaderOnly => {
                 "a recording is a header such as time_s,force_N,position_m and one line a sample"
                     .to_owned()
@@ -413,8 +455,9 @@ impl Problem {
 
 fn unit_hint(role: &str, column: Option<&str>, unit: &str, toml: &str) -> String {
     let column = column.unwrap_or("NAME");
+    let flag = role.replace('_', "-");
     format!(
-        "say it with --{role} {column} --{role}-unit {unit}, or in {toml}: \
+        "say it with --{flag} {column} --{flag}-unit {unit}, or in {toml}: \
          {role} = {{ column = \"{column}\", unit = \"{unit}\" }}"
     )
 }
@@ -422,5 +465,11 @@ fn unit_hint(role: &str, column: Option<&str>, unit: &str, toml: &str) -> String
 fn missing_hint(role: &str, nearest: Option<&str>, toml: &str) -> String {
     let name = nearest.unwrap_or("NAME");
     let question = nearest.map(|name| format!("did you mean '{name}'? ")).unwrap_or_default();
-    format!("{question}name it with --{role} {name}, or in {toml}: {role} = \"{name}\"")
+    if role == "effect" || role.contains(' ') {
+        return format!(
+            "{question}a formula names columns of the file; 'aep effects --formula' says how"
+        );
+    }
+    let flag = role.replace('_', "-");
+    format!("{question}name it with --{flag} {name}, or in {toml}: {role} = \"{name}\"")
 }

@@ -1,4 +1,4 @@
-//! Recordings from files: CSV and MATLAB v5, with column mapping, units and errors that say how to
+//! Recordings from files: CSV, MATLAB v5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
 //! mend them.
 //!
 //! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised
@@ -30,26 +30,35 @@ mod assemble;
 mod csv_table;
 mod enabled;
 mod error;
+mod expression;
 mod header;
 mod layouts;
 mod mapping;
 mod mat_index;
 mod mat_table;
+mod memory_table;
+mod npz;
+mod parquet_table;
+mod part;
 mod pick;
 mod reference;
 mod role;
 mod save;
 mod several;
+mod sheet;
 mod table;
+mod text;
 pub mod unit;
 mod write;
 
+use std::io::Read;
 use std::path::Path;
 
 pub use assemble::{Loaded, Origin};
 pub use error::{DataError, Problem};
 pub use layouts::{LAYOUTS, Layout};
-pub use mapping::{Mapping, Source, hold_name, parse_hold};
+pub use mapping::{Mapping, Source, column_channel, hold_name, parse_hold, regressor_channel};
+pub use part::{Part, part};
 pub use reference::{ReferencePath, read_reference};
 pub use role::{ALL as ROLES, Facts, Role};
 pub use save::{SaveError, save};
@@ -59,6 +68,9 @@ pub use write::{to_csv, to_csv_rounded, to_toml};
 use csv_table::CsvTable;
 use mat_table::MatTable;
 use missing_physics::Recording;
+
+/// The name of a file that stands for standard input.
+pub const STANDARD_INPUT: &str = "-";
 
 /// The recording in `path`, read by `mapping`, by `DATA.toml` beside it and by the columns' names,
 /// in this order.
@@ -76,6 +88,14 @@ pub fn load(path: &Path, mapping: &Mapping) -> Result<Recording, DataError> {
 pub fn read(path: &Path, mapping: &Mapping) -> Result<Loaded, DataError> {
     if path.is_dir() {
         return Err(DataError::new(path, Problem::Directory { files: data_files(path) }));
+    }
+    if path.as_os_str() == STANDARD_INPUT {
+        let (mut bytes, name) = (Vec::new(), Path::new("standard input"));
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .map_err(|error| DataError::new(name, unreadable(&error)))?;
+        return parse(name, bytes, mapping);
     }
     let bytes = std::fs::read(path).map_err(|error| DataError::new(path, unreadable(&error)))?;
     let mapping = mapping.or(&Mapping::beside(path)?);
@@ -100,7 +120,19 @@ pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, D
     if named_mat {
         return Err(DataError::new(path, Problem::NotMat));
     }
-    assemble::assemble(path, &CsvTable::parse(path, &bytes)?, mapping)
+    if parquet_table::is_parquet(&bytes) {
+        return assemble::assemble(path, &parquet_table::read(path, bytes)?, mapping);
+    }
+    if npz::is_npz(&bytes) {
+        return assemble::assemble(path, &npz::read(path, &bytes)?, mapping);
+    }
+    let bytes = if sheet::is_xlsx(&bytes) { sheet::as_text(path, &bytes)? } else { bytes };
+    let bytes = text::decoded(&bytes).map_err(|problem| DataError::new(path, problem))?;
+    let table = match text::head(&bytes) {
+        Some(head) => CsvTable::parse(path, &head.bytes)?.with_units(&head.units),
+        None => CsvTable::parse(path, &bytes)?,
+    };
+    assemble::assemble(path, &table, mapping)
 }
 
 fn unreadable(error: &std::io::Error) -> Problem {
@@ -110,12 +142,15 @@ fn unreadable(error: &std::io::Error) -> Problem {
     }
 }
 
+/// Endings of files that are read.
+const FORMATS: [&str; 5] = ["csv", "mat", "parquet", "npz", "xlsx"];
+
 /// The files of a folder that could be recordings, sorted.
 fn data_files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let paths = entries.map(|entry| entry.path());
     let is_data = |path: &std::path::PathBuf| {
-        path.extension().is_some_and(|ending| ending == "csv" || ending == "mat")
+        path.extension().is_some_and(|ending| FORMATS.iter().any(|format| ending == *format))
     };
     let mut files: Vec<String> =
         paths.filter(is_data).map(|path| path.display().to_string()).collect();

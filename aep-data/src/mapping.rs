@@ -1,5 +1,6 @@
 //! Which column holds what: from flags, from `DATA.toml` beside the data, or by the names alone.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
@@ -46,6 +47,9 @@ impl Source {
 /// time = "t_ms"                              # a column; its unit is the ending of its name
 /// force = { column = "u_V", gain = 35.15 }   # N per V
 /// position = { column = "enc", gain = 1e-6 }
+/// model_force = "0.9*tau_model"             # what your own model gives; any column may be a formula
+/// [regressors]
+/// joint2 = "a2*cos(q1)"                      # known up to a factor
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -66,6 +70,13 @@ pub struct Mapping {
     pub temperature: Source,
     /// 0 where the drive is switched off: such samples are left out.
     pub enabled: Source,
+    /// Force or torque that another model gives for the same samples: what that model lacks is looked for.
+    pub model_force: Source,
+    /// Known regressors: a name, and a formula over columns. Each becomes a channel [`regressor_channel`].
+    pub regressors: BTreeMap<String, String>,
+    /// Columns that are kept as they are, for laws that read them. Each becomes a channel [`column_channel`].
+    #[serde(skip)]
+    pub columns: Vec<String>,
     /// Sampling interval in seconds, for files without a time.
     pub interval_s: Option<f64>,
     /// How the input acts between samples: `zero-order` or `sampled`.
@@ -85,6 +96,7 @@ impl Mapping {
             Role::Segment => &self.segment,
             Role::Temperature => &self.temperature,
             Role::Enabled => &self.enabled,
+            Role::ModelForce => &self.model_force,
         }
     }
 
@@ -100,6 +112,9 @@ impl Mapping {
             segment: self.segment.or(&other.segment),
             temperature: self.temperature.or(&other.temperature),
             enabled: self.enabled.or(&other.enabled),
+            model_force: self.model_force.or(&other.model_force),
+            regressors: joined(&self.regressors, &other.regressors),
+            columns: self.columns.iter().chain(&other.columns).cloned().collect(),
             interval_s: self.interval_s.or(other.interval_s),
             hold: self.hold.or(other.hold),
         }
@@ -131,6 +146,26 @@ impl Mapping {
         })?;
         Self::parse(&text, &path)
     }
+}
+
+/// The channel of a recording that holds a known regressor.
+pub fn regressor_channel(name: &str) -> String {
+    format!("regressor {name}")
+}
+
+/// The channel of a recording that holds a column as it stands in the file.
+pub fn column_channel(name: &str) -> String {
+    format!("column {name}")
+}
+
+/// All regressors of both, those of the first one where both have a name.
+fn joined(
+    first: &BTreeMap<String, String>,
+    second: &BTreeMap<String, String>,
+) -> BTreeMap<String, String> {
+    let mut all = second.clone();
+    all.extend(first.iter().map(|(name, formula)| (name.clone(), formula.clone())));
+    all
 }
 
 /// Reads `zero-order` or `sampled`.

@@ -57,14 +57,19 @@ impl Table for MatTable {
         None
     }
 
-    fn missing(&self, role: &'static str, column: Option<&str>) -> Problem {
+    fn missing(&self, role: &str, column: Option<&str>) -> Problem {
         let dropped = self.entries.iter().find(|e| !e.numeric && Some(e.name.as_str()) == column);
         if let Some(entry) = dropped {
             return Problem::NotNumeric { name: entry.name.clone(), class: entry.class };
         }
         let present = self.entries.iter().map(Entry::label).collect();
         let nearest = nearest(column.unwrap_or(role), &self.names());
-        Problem::MissingVariable { role, column: column.map(str::to_owned), present, nearest }
+        Problem::MissingVariable {
+            role: role.to_owned(),
+            column: column.map(str::to_owned),
+            present,
+            nearest,
+        }
     }
 }
 

@@ -3,18 +3,12 @@
 use std::path::Path;
 
 use crate::error::{DataError, Problem};
+use crate::expression::Expression;
 use crate::header::{Header, recognise, unit_unknown};
 use crate::mapping::Source;
 use crate::role::Role;
-use crate::table::{Column, Table};
+use crate::table::Table;
 use crate::unit::{self, Quantity, Unit};
-
-/// One factor of a product.
-#[derive(Clone, Debug, PartialEq)]
-enum Factor {
-    Column(String),
-    Number(f64),
-}
 
 /// The unit of a quantity, as far as the file says it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,12 +22,11 @@ pub(crate) enum Said {
 }
 
 /// Where a quantity comes from.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Pick {
     pub role: Role,
-    /// Column or product, as it stands in the file.
-    pub expression: String,
-    factors: Vec<Factor>,
+    /// Column, product or formula, as it stands in the file.
+    pub expression: Expression,
     pub said: Said,
     pub gain: f64,
 }
@@ -55,10 +48,11 @@ impl Pick {
             },
         };
         let gain = checked_gain(role, source).map_err(|problem| DataError::new(path, problem))?;
-        let factors = factors(role, &expression, table).map_err(|p| DataError::new(path, p))?;
-        let said = said(role, source, &factors)
-            .map_err(|problem| DataError::new(path, problem).in_column(&expression))?;
-        Ok(Some(Self { role, expression, factors, said, gain }))
+        let expression = Expression::find(role.facts().name, &expression, table)
+            .map_err(|problem| DataError::new(path, problem))?;
+        let said = said(role, source, expression.single())
+            .map_err(|problem| DataError::new(path, problem).in_column(&expression.text))?;
+        Ok(Some(Self { role, expression, said, gain }))
     }
 
     /// Whether it belongs to a rotary axis, where that is known.
@@ -74,29 +68,17 @@ impl Pick {
 
     /// The columns it is made of.
     pub fn columns(&self) -> impl Iterator<Item = &str> {
-        self.factors.iter().filter_map(|factor| match factor {
-            Factor::Column(name) => Some(name.as_str()),
-            Factor::Number(_) => None,
-        })
+        self.expression.columns()
     }
 
     /// Its values in SI; one value where all factors are single.
     pub fn values(&self, table: &dyn Table, path: &Path) -> Result<Vec<f64>, DataError> {
-        let mut product = vec![1.0];
-        for factor in &self.factors {
-            match factor {
-                Factor::Number(number) => product.iter_mut().for_each(|value| *value *= number),
-                Factor::Column(name) => {
-                    let column = checked(table.column(name)?, table, path)?;
-                    product = multiplied(product, column, path)?;
-                }
-            }
-        }
+        let values = self.expression.values(table, path)?;
         let (factor, shift) = match self.said {
             Said::Unit(unit) => (unit.factor * self.gain, unit.shift),
             _ => (self.gain, 0.0),
         };
-        Ok(product.into_iter().map(|value| value * factor + shift).collect())
+        Ok(values.into_iter().map(|value| value * factor + shift).collect())
     }
 }
 
@@ -121,34 +103,12 @@ fn checked_gain(role: Role, source: &Source) -> Result<f64, Problem> {
     Err(Problem::BadNumber { what, value: gain, must: "finite and not zero" })
 }
 
-fn factors(role: Role, expression: &str, table: &dyn Table) -> Result<Vec<Factor>, Problem> {
-    let names = table.names();
-    let whole = [expression];
-    let parts: Vec<&str> = if names.iter().any(|name| name == expression) {
-        whole.to_vec()
-    } else {
-        expression.split('*').map(str::trim).collect()
-    };
-    parts
-        .into_iter()
-        .map(|part| {
-            let exact = names.iter().find(|name| *name == part);
-            let found = exact.or_else(|| names.iter().find(|name| name.eq_ignore_ascii_case(part)));
-            match (found, part.parse::<f64>()) {
-                (Some(name), _) => Ok(Factor::Column(name.clone())),
-                (None, Ok(number)) if number.is_finite() => Ok(Factor::Number(number)),
-                _ => Err(table.missing(role.facts().name, Some(part))),
-            }
-        })
-        .collect()
-}
-
-fn said(role: Role, source: &Source, factors: &[Factor]) -> Result<Said, Problem> {
+fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Problem> {
     if let Some(text) = &source.unit {
         let unit = unit::find(text).ok_or_else(|| unknown_unit(role, text))?;
         return accepted(role, unit).map(Said::Unit);
     }
-    let [Factor::Column(name)] = factors else {
+    let Some(name) = column else {
         return Ok(Said::Nothing);
     };
     let header = Header::parse(name);
@@ -190,27 +150,4 @@ fn accepted(role: Role, unit: &'static Unit) -> Result<&'static Unit, Problem> {
     }
     let (role, known) = (role.facts().name, known_units(role));
     Err(Problem::WrongUnit { role, unit: unit.name.to_owned(), known })
-}
-
-fn checked(column: Column, table: &dyn Table, path: &Path) -> Result<Column, DataError> {
-    let Some(bad) = column.bad else {
-        return Ok(column);
-    };
-    let error = DataError::new(path, Problem::NotANumber { value: bad.text });
-    Err(error.at_sample(bad.sample, table.line(bad.sample)).in_column(column.name))
-}
-
-fn multiplied(product: Vec<f64>, column: Column, path: &Path) -> Result<Vec<f64>, DataError> {
-    let (samples, values) = (product.len(), column.values.len());
-    if values == 1 {
-        return Ok(product.into_iter().map(|value| value * column.values[0]).collect());
-    }
-    if samples == 1 {
-        return Ok(column.values.into_iter().map(|value| value * product[0]).collect());
-    }
-    if samples != values {
-        let problem = Problem::Length { name: column.name, values, samples };
-        return Err(DataError::new(path, problem));
-    }
-    Ok(product.into_iter().zip(column.values).map(|(a, b)| a * b).collect())
 }

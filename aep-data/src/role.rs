@@ -21,6 +21,8 @@ pub enum Role {
     Temperature,
     /// 0 where the drive is switched off.
     Enabled,
+    /// Force or torque that another model gives for the same samples.
+    ModelForce,
 }
 
 /// What is known of a role.
@@ -133,6 +135,17 @@ pub const ALL: &[Facts] = &[
         linear: Quantity::Number,
         rotary: Quantity::Number,
         aliases: &["enabled", "torque_enable", "torque_enabled", "drive_enabled"],
+        rotary_aliases: &[],
+    },
+    Facts {
+        role: Role::ModelForce,
+        name: "model_force",
+        header: "model_force_N",
+        rotary_header: "model_torque_Nm",
+        linear: Quantity::Force,
+        rotary: Quantity::Torque,
+        // Never taken unasked: with it a discovery answers another question.
+        aliases: &[],
         rotary_aliases: &[],
     },
 ];

@@ -33,7 +33,30 @@ pub fn read_all(paths: &[PathBuf], mapping: &Mapping) -> Result<Loaded, DataErro
     }
     let present = |name: &str| name == "time" || all.recording.channel(name).is_some();
     all.origins.retain(|origin| present(origin.channel) || origin.channel == "enabled");
+    let by_time = |name: &str| name == "model_force" || name.contains(' ');
+    if all.recording.channels().iter().any(|channel| by_time(&channel.name)) {
+        all.recording = one_after_another(&all.recording)
+            .map_err(|error| DataError::new(first, Problem::Recording(error)))?;
+    }
     Ok(all)
+}
+
+/// The same with pieces moved in time, where they overlap: what is looked up by time must be found once.
+fn one_after_another(recording: &Recording) -> Result<Recording, missing_physics::RecordingError> {
+    let mut time = recording.time().to_vec();
+    let mut segment = vec![0; time.len()];
+    let mut last = f64::NEG_INFINITY;
+    for (number, piece) in (0..).zip(recording.segments()) {
+        segment[piece.clone()].fill(number);
+        let late = last + recording.interval() - time[piece.start];
+        if late > 0.0 {
+            time[piece.clone()].iter_mut().for_each(|t| *t += late);
+        }
+        last = time[piece.end - 1];
+    }
+    let channels = recording.channels().to_vec();
+    let moved = Recording::with_segments(recording.name(), time, channels, segment)?;
+    Ok(moved.with_hold_of(recording))
 }
 
 fn agree(first: &Recording, next: &Recording) -> Result<(), Problem> {

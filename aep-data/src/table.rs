@@ -34,7 +34,7 @@ pub(crate) trait Table {
     fn line(&self, sample: usize) -> Option<u64>;
 
     /// The error for a column that is not there.
-    fn missing(&self, role: &'static str, column: Option<&str>) -> Problem;
+    fn missing(&self, role: &str, column: Option<&str>) -> Problem;
 }
 
 /// The name among `names` that was probably meant by `wanted`.

@@ -145,7 +145,7 @@ fn other_files_are_recognised() {
     let bytes = |bytes: &[u8], name: &str| {
         parse(Path::new(name), bytes.to_vec(), &Mapping::default()).unwrap_err()
     };
-    assert_says(&bytes(b"\xff\xfet\0i\0", "run.csv"), &["UTF-16", "UTF-8"]);
+    assert_says(&bytes(b"\xff\xfet\0i", "run.csv"), &["UTF-16", "UTF-8"]);
     assert_says(&bytes(b"PK\x03\x04....", "run.xlsx"), &["spreadsheet"]);
     assert_says(&bytes(b"time,force", "run.mat"), &["not a MATLAB v5 file", "'-v7'"]);
     assert_says(&bytes(b"\x89HDF\r\n\x1a\n....", "run.mat"), &["7.3", "save('data.mat', '-v7')"]);

@@ -274,6 +274,8 @@ struct Walk<'a> {
     /// Force of everything smooth.
     smooth: Vec<f64>,
     mass: f64,
+    /// Whether the model stands beside a given force.
+    beside: bool,
     /// Friction force.
     friction: Vec<f64>,
     /// Utilisation of the friction level, -1..1.
@@ -296,6 +298,7 @@ impl<'a> Walk<'a> {
             drive_force,
             smooth: Vec::new(),
             mass: model.mass(),
+            beside: model.timing().is_some(),
             friction: Vec::new(),
             used: Vec::new(),
             attached: Vec::new(),
@@ -312,6 +315,9 @@ impl<'a> Walk<'a> {
             let force = walk.element(term, &vec![0.0; samples], &vec![0.0; samples]);
             walk.attached.resize(samples, 0.0);
             add(&mut walk.attached, &force);
+            if walk.beside {
+                walk.release(term);
+            }
         }
         walk
     }
@@ -327,6 +333,19 @@ impl<'a> Walk<'a> {
         } else {
             self.used = self.motion.sliding();
             self.friction = level.iter().zip(&self.used).map(|(l, used)| l * used).collect();
+        }
+    }
+
+    /// Takes away what an attached body would be if it were fixed to the mass: the given force has that already.
+    fn release(&mut self, term: &Term) {
+        let about = term.effect().about();
+        let value = |name: &str| about.parameter(name).map_or(0.0, |k| term.values()[k]);
+        let (mass, level, damping) = (value("m_L"), value("F_L"), value("d_L"));
+        let sliding = self.motion.sliding();
+        for (k, force) in self.attached.iter_mut().enumerate() {
+            *force -= mass * self.motion.acceleration[k]
+                + level * sliding[k]
+                + damping * self.motion.velocity[k];
         }
     }
 
@@ -391,8 +410,11 @@ impl<'a> Walk<'a> {
             effect.friction_level(p, m, level);
         });
         add(&mut level, &self.remembered);
-        for level in &mut level {
-            *level = level.max(0.0);
+        // Beside a given force only what its level lacks is known, which may be negative.
+        if !self.beside {
+            for level in &mut level {
+                *level = level.max(0.0);
+            }
         }
         level
     }

@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::axis::{Axis, Quantity};
+use crate::effects::beside::is_beside;
 use crate::effects::{Effect, Library, Parameter, Role, Slot, UnknownEffect};
+use crate::known::Known;
 
 mod file;
 mod schema;
@@ -58,6 +60,11 @@ pub enum ModelError {
         /// The place.
         slot: &'static str,
     },
+    /// An effect that only stands beside a force that another model gives.
+    #[error(
+        "'{0}' stands beside a force that another model gives: it needs a column of that force (--model-force)"
+    )]
+    NoPlace(String),
     /// Text that is not a model.
     #[error(
         "not a model: {0}\na model looks like {{\"axis\": \"linear\", \"mass\": 50.0, \"effects\": [{{\"effect\": \"coulomb\", \"parameters\": {{\"F_C\": 8.0}}}}]}}"
@@ -117,11 +124,30 @@ impl PartialEq for Term {
 pub struct Model {
     axis: Axis,
     mass: f64,
+    /// For a model beside a given force.
+    timing: Option<Timing>,
     terms: Vec<Term>,
+    known: Known,
 }
 
 /// Address of the mass or the inertia.
 pub const MASS: &str = "mass";
+/// Addresses of the timing of a model that stands beside a given force.
+pub const SHIFT: &str = "timing.shift";
+/// See [`SHIFT`].
+pub const SMOOTHING: &str = "timing.smoothing";
+
+/// How the force that another model gives stands to the recorded one: no physics, but what sampling and filters make.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Timing {
+    /// How much later the recorded force is, s (half a sample where a command is held).
+    #[serde(rename = "shift_s")]
+    pub shift: f64,
+    /// Variance of the smoothing that it went through, s^2: positions that were differentiated were smoothed.
+    #[serde(rename = "smoothing_s2", default)]
+    pub smoothing: f64,
+}
 
 const POSITIVE: &str = "it must be finite and above 0";
 const FINITE: &str = "it must be finite";
@@ -133,7 +159,38 @@ impl Model {
     /// [`ModelError::BadValue`] unless `mass` is finite and positive.
     pub fn new(axis: Axis, mass: f64) -> Result<Self, ModelError> {
         check_mass(mass)?;
-        Ok(Self { axis, mass, terms: Vec::new() })
+        Ok(Self { axis, mass, timing: None, terms: Vec::new(), known: Known::default() })
+    }
+
+    /// Effects beside a force that another model gives for every sample of a recording: without a mass of its own, so
+    /// that it can be compared with a recording but not be simulated.
+    ///
+    /// # Errors
+    /// [`ModelError::BadValue`] unless `timing` is finite.
+    pub fn beside(axis: Axis, timing: Timing) -> Result<Self, ModelError> {
+        let known = Known::default();
+        let none = Some(Timing::default());
+        let mut model = Self { axis, mass: 0.0, timing: none, terms: Vec::new(), known };
+        model.set(SHIFT, timing.shift)?;
+        model.set(SMOOTHING, timing.smoothing)?;
+        Ok(model)
+    }
+
+    /// The same with what is known of its parameters from elsewhere, for whoever fits it again.
+    #[must_use]
+    pub fn with_known(mut self, known: Known) -> Self {
+        self.known = known;
+        self
+    }
+
+    /// What is known of its parameters from elsewhere.
+    pub fn known(&self) -> &Known {
+        &self.known
+    }
+
+    /// Timing of a model beside a given force; nothing for a plant of its own.
+    pub fn timing(&self) -> Option<Timing> {
+        self.timing
     }
 
     /// The same with one effect more; parameters that `values` does not name get typical values.
@@ -165,6 +222,9 @@ impl Model {
     fn check_place(&self, effect: &'static dyn Effect) -> Result<(), ModelError> {
         let stem = |name: &'static str| name.split(':').next().unwrap_or(name);
         let about = effect.about();
+        if self.timing.is_none() && is_beside(effect) {
+            return Err(ModelError::NoPlace(about.name.to_owned()));
+        }
         for term in &self.terms {
             let other = term.effect.about();
             if stem(other.name) == stem(about.name) {
@@ -193,7 +253,7 @@ impl Model {
         self.axis
     }
 
-    /// Mass, kg, or inertia, kg m^2.
+    /// Mass, kg, or inertia, kg m^2; 0 for a model beside a given force.
     pub fn mass(&self) -> f64 {
         self.mass
     }
@@ -213,18 +273,23 @@ impl Model {
         self.terms.iter().map(Term::name).collect()
     }
 
-    /// Addresses of all parameters, the mass first.
+    /// Addresses of all parameters, the mass first (beside a given force: the shift).
     pub fn addresses(&self) -> Vec<String> {
         let parameters = self.terms.iter().flat_map(|term| {
             term.effect.about().parameters.iter().map(|p| address(term.effect, p.name))
         });
-        std::iter::once(MASS.to_owned()).chain(parameters).collect()
+        let first: &[&str] = if self.timing.is_some() { &[SHIFT, SMOOTHING] } else { &[MASS] };
+        first.iter().map(|name| (*name).to_owned()).chain(parameters).collect()
     }
 
     /// Values of all parameters, in the order of [`Model::addresses`].
     pub fn values(&self) -> Vec<f64> {
         let parameters = self.terms.iter().flat_map(|term| term.values.iter().copied());
-        std::iter::once(self.mass).chain(parameters).collect()
+        let first = match self.timing {
+            Some(timing) => vec![timing.shift, timing.smoothing],
+            None => vec![self.mass],
+        };
+        first.into_iter().chain(parameters).collect()
     }
 
     /// SI unit of the parameter at `address`.
@@ -232,8 +297,11 @@ impl Model {
     /// # Errors
     /// [`ModelError::UnknownParameter`].
     pub fn unit(&self, address: &str) -> Result<&'static str, ModelError> {
-        if address == MASS {
-            return Ok(self.axis.unit(Quantity::Mass));
+        match self.timing {
+            Some(_) if address == SHIFT => return Ok("s"),
+            Some(_) if address == SMOOTHING => return Ok("s^2"),
+            None if address == MASS => return Ok(self.axis.unit(Quantity::Mass)),
+            _ => {}
         }
         let (term, index) = self.locate(address)?;
         let parameter = &self.terms[term].effect.about().parameters[index];
@@ -251,8 +319,11 @@ impl Model {
     /// # Errors
     /// [`ModelError::UnknownParameter`].
     pub fn get(&self, address: &str) -> Result<f64, ModelError> {
-        if address == MASS {
-            return Ok(self.mass);
+        match self.timing {
+            Some(timing) if address == SHIFT => return Ok(timing.shift),
+            Some(timing) if address == SMOOTHING => return Ok(timing.smoothing),
+            None if address == MASS => return Ok(self.mass),
+            _ => {}
         }
         self.locate(address).map(|(term, index)| self.terms[term].values[index])
     }
@@ -262,7 +333,16 @@ impl Model {
     /// # Errors
     /// The address is unknown, or the value is not finite (or not positive where it must be).
     pub fn set(&mut self, address: &str, value: f64) -> Result<(), ModelError> {
-        if address == MASS {
+        if let Some(timing) = self.timing.as_mut().filter(|_| [SHIFT, SMOOTHING].contains(&address))
+        {
+            if !value.is_finite() {
+                let address = address.to_owned();
+                return Err(ModelError::BadValue { address, value, need: FINITE });
+            }
+            *(if address == SHIFT { &mut timing.shift } else { &mut timing.smoothing }) = value;
+            return Ok(());
+        }
+        if self.timing.is_none() && address == MASS {
             check_mass(value)?;
             self.mass = value;
             return Ok(());

@@ -1,10 +1,13 @@
 //! The measurement and how to read it.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use aep_data::{Loaded, Mapping, Source, parse_hold, read, read_all};
+use aep_data::{Loaded, Mapping, Part, Source, hold_name, parse_hold, part, read, read_all};
 use missing_physics::Hold;
 
+use super::effects::{EffectNames, add_regressors, base_of, files_words, library};
+use super::shell::{flag, quoted};
 use crate::failure::Failure;
 
 /// How to read a file whose columns have other names, units or gains.
@@ -14,7 +17,8 @@ pub struct MappingArgs {
     /// Column or variable of the time
     #[arg(long, value_name = "NAME")]
     time: Option<String>,
-    /// Column of the force or torque, or a product: `vir*gtau`, `duty*v_in_V`
+    /// Column of the force or torque, or a formula over columns: `duty*v_in_V`, `force_N - 9.81*m` (as for every column
+    /// here; `aep effects --formula` lists the functions)
     #[arg(long, value_name = "NAME")]
     force: Option<String>,
     /// Column of the position or angle
@@ -35,6 +39,17 @@ pub struct MappingArgs {
     /// Column that is 0 where the drive is switched off; such samples are left out
     #[arg(long, value_name = "NAME")]
     enabled: Option<String>,
+    /// Column of the force or torque that your own model gives for the same samples, in the unit of the force: what
+    /// that model lacks is looked for, nothing of ours is in it
+    #[arg(long, value_name = "NAME")]
+    model_force: Option<String>,
+    /// Whether the model's force is taken as it is, or with a fitted factor
+    #[arg(long, value_enum, value_name = "HOW")]
+    model_gain: Option<ModelGain>,
+    /// A force that is known up to a factor, as a formula over columns: `load=a2*cos(q1)`. It is tried like an effect
+    /// called `load`, and can stand in the base. May be given several times
+    #[arg(long, value_name = "NAME=FORMULA", value_parser = regressor)]
+    regressor: Vec<(String, String)>,
     /// Unit of the time: s, ms, us, ...
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
@@ -56,6 +71,9 @@ pub struct MappingArgs {
     /// Factor on the force, e.g. N per V
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     force_gain: Option<f64>,
+    /// Unit of the model's force, where its name does not say it
+    #[arg(long, value_name = "UNIT")]
+    model_force_unit: Option<String>,
     /// Factor on the position, e.g. m per count
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     position_gain: Option<f64>,
@@ -65,6 +83,15 @@ pub struct MappingArgs {
     /// Factor on the reference
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     reference_gain: Option<f64>,
+    /// First time that is used, s, as it stands in the file
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Last time that is used, s
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    to: Option<f64>,
+    /// Use every N-th sample only
+    #[arg(long, value_name = "N")]
+    every: Option<NonZeroUsize>,
     /// Sampling interval in s, for files without a time
     #[arg(long, value_name = "S")]
     interval: Option<f64>,
@@ -75,6 +102,8 @@ pub struct MappingArgs {
 
 impl MappingArgs {
     fn mapping(&self) -> Mapping {
+        let library = library();
+        let read = library.effects().iter().flat_map(|effect| effect.columns());
         let source = |column: &Option<String>, unit: &Option<String>, gain: Option<f64>| Source {
             column: column.clone(),
             unit: unit.clone(),
@@ -89,20 +118,124 @@ impl MappingArgs {
             segment: source(&self.segment, &None, None),
             temperature: source(&self.temperature, &self.temperature_unit, None),
             enabled: source(&self.enabled, &None, None),
+            model_force: source(&self.model_force, &self.model_force_unit, None),
+            regressors: self.regressor.iter().cloned().collect(),
+            columns: read.cloned().collect(),
             interval_s: self.interval,
             hold: self.hold,
         }
     }
 
+    /// The flags that were given, as they stand in a command.
+    pub fn words(&self) -> String {
+        let texts = [
+            ("time", &self.time),
+            ("force", &self.force),
+            ("position", &self.position),
+            ("velocity", &self.velocity),
+            ("reference", &self.reference),
+            ("segment", &self.segment),
+            ("temperature", &self.temperature),
+            ("enabled", &self.enabled),
+            ("model-force", &self.model_force),
+            ("time-unit", &self.time_unit),
+            ("force-unit", &self.force_unit),
+            ("position-unit", &self.position_unit),
+            ("velocity-unit", &self.velocity_unit),
+            ("reference-unit", &self.reference_unit),
+            ("temperature-unit", &self.temperature_unit),
+            ("model-force-unit", &self.model_force_unit),
+        ];
+        let numbers = [
+            ("force-gain", self.force_gain),
+            ("position-gain", self.position_gain),
+            ("velocity-gain", self.velocity_gain),
+            ("reference-gain", self.reference_gain),
+            ("interval", self.interval),
+            ("from", self.from),
+            ("to", self.to),
+        ];
+        let mut words: String =
+            texts.iter().map(|(name, text)| flag(name, text.as_ref())).collect();
+        words.extend(numbers.iter().map(|(name, number)| flag(name, *number)));
+        words.extend(
+            self.regressor
+                .iter()
+                .map(|(name, formula)| flag("regressor", Some(format!("{name}={formula}")))),
+        );
+        words += &flag("every", self.every);
+        words += &flag("hold", self.hold.map(hold_name));
+        words + &files_words()
+    }
+
+    /// The base model of a discovery: `named`, or what a base is where nothing was named; the gain of the user's own model
+    /// joins it where that is to be fitted.
+    pub fn base(
+        &self,
+        named: Option<&EffectNames>,
+        loaded: &Loaded,
+    ) -> Result<Vec<String>, Failure> {
+        let names = named.cloned().unwrap_or_else(|| base_of(&loaded.recording));
+        let mut base = names.checked()?;
+        if self.model_gain == Some(ModelGain::Fit) {
+            if loaded.recording.channel("model_force").is_none() {
+                return Err(Failure::bad_input(
+                    "--model-gain is the gain of a model's force, but there is none",
+                )
+                .with_hint("say its column: --model-force COLUMN"));
+            }
+            if !base.iter().any(|name| name == "model-gain") {
+                base.push("model-gain".to_owned());
+            }
+        }
+        Ok(base)
+    }
+
+    /// The part that was asked for.
+    fn cut(&self, mut loaded: Loaded) -> Result<Loaded, Failure> {
+        let wanted =
+            Part { from: self.from, to: self.to, every: self.every.map(NonZeroUsize::get) };
+        if !wanted.is_all() {
+            let time = loaded.recording.time();
+            let (first, last) = (time[0], time[time.len() - 1]);
+            loaded.recording = part(&loaded.recording, &wanted).map_err(|error| {
+                Failure::bad_input(format!("--from, --to and --every leave too little: {error}"))
+                    .with_hint(format!("the file goes from {first} s to {last} s"))
+            })?;
+        }
+        add_regressors(&loaded.recording)?;
+        Ok(loaded)
+    }
+
     /// Reads `path`.
     pub fn read(&self, path: &Path) -> Result<Loaded, Failure> {
-        Ok(read(path, &self.mapping())?)
+        self.cut(read(path, &self.mapping())?)
     }
 
     /// Reads `paths` as the pieces of one recording.
     pub fn read_all(&self, paths: &[PathBuf]) -> Result<Loaded, Failure> {
-        Ok(read_all(paths, &self.mapping())?)
+        self.cut(read_all(paths, &self.mapping())?)
     }
+}
+
+/// What is done with the gain of the model's force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum ModelGain {
+    /// It is taken as it is
+    One,
+    /// A factor is fitted
+    Fit,
+}
+
+/// `NAME=FORMULA`.
+fn regressor(text: &str) -> Result<(String, String), String> {
+    let (name, formula) = text
+        .split_once('=')
+        .filter(|(name, formula)| !name.trim().is_empty() && !formula.trim().is_empty())
+        .ok_or_else(|| {
+            format!("'{text}' is no regressor: write NAME=FORMULA, e.g. load=a2*cos(q1)")
+        })?;
+    Ok((name.trim().to_owned(), formula.trim().to_owned()))
 }
 
 /// A measurement that has to be given.
@@ -118,9 +251,14 @@ pub struct DataArgs {
 }
 
 impl DataArgs {
-    /// The files, as they stand in a command.
+    /// The files and how they are read, as they stand in a command.
     pub fn words(&self) -> String {
-        words(&self.paths)
+        words(&self.paths) + &self.mapping.words()
+    }
+
+    /// How the files are read.
+    pub fn mapping(&self) -> &MappingArgs {
+        &self.mapping
     }
 
     /// Reads it.
@@ -131,9 +269,6 @@ impl DataArgs {
 
 /// Files as they stand in a command.
 pub fn words(paths: &[PathBuf]) -> String {
-    let quoted = paths.iter().map(|path| {
-        let text = path.display().to_string();
-        if text.contains(char::is_whitespace) { format!("'{text}'") } else { text }
-    });
+    let quoted = paths.iter().map(|path| quoted(&path.display().to_string()));
     quoted.collect::<Vec<String>>().join(" ")
 }

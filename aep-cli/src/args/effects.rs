@@ -1,22 +1,40 @@
 //! Lists of effects on the command line: `coulomb,viscous`.
 
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::{PoisonError, RwLock};
 
 use friction_ident::Library;
+use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::effects::formula;
+use friction_ident::effects::regressor::{REFERENCE, regressor, regressors};
+use missing_physics::Recording;
 
+use super::shell::flag;
 use crate::failure::Failure;
 
-/// The library, once files of the user have joined it.
-static LIBRARY: OnceLock<Library> = OnceLock::new();
+/// The library, once effects of the user have joined it.
+static LIBRARY: RwLock<Option<Library>> = RwLock::new(None);
 
-/// The effects that this run of the program knows: those built in, and those of `--effects-file`.
+/// The effects that this run of the program knows: those built in, those of `--effects-file`, and regressors.
 pub fn library() -> Library {
-    LIBRARY.get().cloned().unwrap_or_else(Library::builtin)
+    let library = LIBRARY.read().unwrap_or_else(PoisonError::into_inner);
+    library.clone().unwrap_or_else(Library::builtin)
 }
 
-/// Lets the effects in these files join the library. To be called once, before a command runs.
+fn set_library(library: Library) {
+    *LIBRARY.write().unwrap_or_else(PoisonError::into_inner) = Some(library);
+}
+
+/// The files of effects that were given.
+static FILES: RwLock<Vec<PathBuf>> = RwLock::new(Vec::new());
+
+/// ` --effects-file FILE` for every file of effects that was given.
+pub fn files_words() -> String {
+    let files = FILES.read().unwrap_or_else(PoisonError::into_inner);
+    files.iter().map(|file| flag("effects-file", Some(file.display()))).collect()
+}
+
+/// Lets the effects in these files join the library. To be called before a command runs.
 pub fn add_files(files: &[PathBuf]) -> Result<(), Failure> {
     let mut library = Library::builtin();
     for path in files {
@@ -27,8 +45,27 @@ pub fn add_files(files: &[PathBuf]) -> Result<(), Failure> {
             .map_err(|error| Failure::from_lines(&error.to_string()).in_file(path))?;
         library = library.with(effect);
     }
-    // It is set nowhere else.
-    let _ = LIBRARY.set(library);
+    set_library(library);
+    *FILES.write().unwrap_or_else(PoisonError::into_inner) = files.to_vec();
+    Ok(())
+}
+
+/// Lets the regressors of a recording join the library.
+pub fn add_regressors(recording: &Recording) -> Result<(), Failure> {
+    let mut library = library();
+    for name in regressors(recording) {
+        let known = library.find(name).ok().map(|effect| effect.about().reference);
+        if known != Some(REFERENCE) {
+            if known == Some(formula::REFERENCE) {
+                let what = format!("'{name}' is both a regressor and an effect of your own");
+                return Err(Failure::bad_input(what).with_hint("call one of them by another name"));
+            }
+            let effect =
+                regressor(name).map_err(|error| Failure::from_lines(&error.to_string()))?;
+            library = library.with(effect);
+        }
+    }
+    set_library(library);
     Ok(())
 }
 
@@ -43,6 +80,13 @@ impl std::str::FromStr for EffectNames {
         let names = text.split([',', '+']).map(str::trim).filter(|name| !name.is_empty());
         Ok(Self(names.map(str::to_lowercase).collect()))
     }
+}
+
+/// Effects of a base model that nobody named: none beside a force that the user's own model gives.
+pub fn base_of(recording: &Recording) -> EffectNames {
+    let own = recording.channel(MODEL_FORCE).is_some();
+    let names: &[&str] = if own { &[] } else { &["coulomb", "viscous", "offset"] };
+    EffectNames(names.iter().map(|name| (*name).to_owned()).collect())
 }
 
 impl EffectNames {

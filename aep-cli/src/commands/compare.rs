@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use friction_ident::Model;
+use friction_ident::{Known, Model};
 use friction_ident::family::FrictionFamily;
 use missing_physics::{Thresholds, diagnosis};
 use missing_physics::fit::Fit;
@@ -27,7 +27,7 @@ pub struct Args {
     #[command(flatten)]
     data: DataArgs,
     /// The model, as written by identify, extend or discover; may be given several times
-    #[arg(long, value_name = "MODEL.json", required = true)]
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "model_force")]
     model: Vec<PathBuf>,
     /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
@@ -49,11 +49,14 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let models: Vec<Model> =
-        args.model.iter().map(|path| steps::read_model(path)).collect::<Result<_, _>>()?;
     let watch = args.limit.watch();
     let loaded = args.data.read()?;
-    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let models: Vec<Model> = if args.model.is_empty() {
+        vec![steps::model_or_given(None, &loaded.recording)?]
+    } else {
+        args.model.iter().map(|path| steps::read_model(path)).collect::<Result<_, _>>()?
+    };
+    let family = steps::family(&loaded.recording, args.bandwidth, &Known::default())?;
     let fits: Vec<Fit> =
         models.iter().map(|model| steps::as_given(&family, model)).collect::<Result<_, _>>()?;
     let Some(fit) = fits.first() else {
@@ -62,7 +65,12 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let rung = diagnosis::rung(&family, fit, &[]);
     let effects = rung.effects.join(" + ");
     let mut discovery = diagnosis::comparison(&family, (fit, fit), vec![rung], args.seed, &|| watch.is_over());
-    let (views, mut notes) = side_by_side(&family, &args.model, &fits, watch)?;
+    let paths = if args.model.is_empty() {
+        vec![PathBuf::from("model_force")]
+    } else {
+        args.model.clone()
+    };
+    let (views, mut notes) = side_by_side(&family, &paths, &fits, watch)?;
     discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
     let warnings = output::warnings(&views, &notes);
     notes.splice(0..0, diagnosis::views::disagreements(&views));
@@ -77,7 +85,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         loaded: &loaded,
         check: &data,
         thresholds: Thresholds::default(),
-        more: vec![("models", in_json(&args.model, &views))],
+        more: vec![("models", in_json(&paths, &views))],
     };
     let files = report.save(&args.results)?;
     if global.quiet || args.results.own_stdout() {

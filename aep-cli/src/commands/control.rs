@@ -136,7 +136,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 }
 
 fn case(args: &Args) -> Result<Case, Failure> {
-    let read = |path: &Option<PathBuf>| path.as_deref().map(steps::read_model).transpose();
+    let read = |path: &Option<PathBuf>| path.as_deref().map(steps::read_plant).transpose();
     let (model, plant) = (read(&args.model)?, read(&args.plant)?);
     let of_the_paper = model.is_none();
     let model = match model {

@@ -10,7 +10,7 @@ use missing_physics::report::{Confirmed, Verdict};
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{self, EffectNames, MappingArgs, OutputArgs, RunArgs};
+use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
@@ -27,14 +27,14 @@ use crate::stop::Watch;
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
-    /// MATLAB v5/v7; without it, the example that comes with the program. Names, units and gains may also
+    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), MATLAB v5/v7, Parquet,
+    /// .npz, .xlsx, or `-` for standard input; without it, the example that comes with the program. Names, units and gains may also
     /// stand in DATA.toml beside it. Several files are pieces of one measurement
     #[arg(value_name = "DATA")]
     data: Vec<PathBuf>,
-    /// Effects of the model to begin with
-    #[arg(long, value_name = "EFFECTS", default_value = "coulomb,viscous,offset")]
-    base: EffectNames,
+    /// Effects of the model to begin with: coulomb,viscous,offset, or none beside --model-force
+    #[arg(long, value_name = "EFFECTS")]
+    base: Option<EffectNames>,
     /// Write the last model
     #[arg(long, short = 'o', value_name = "MODEL.json")]
     output: Option<PathBuf>,
@@ -58,6 +58,20 @@ pub struct Args {
     run: RunArgs,
     #[command(flatten)]
     mapping: MappingArgs,
+    #[command(flatten)]
+    known: KnownArgs,
+}
+
+impl Args {
+    /// The data, how they are read and what the base is, as they stand in a command.
+    fn words(&self) -> String {
+        let base = self.base.as_ref().map(|base| base.0.join(","));
+        args::words(&self.data)
+            + &self.mapping.words()
+            + &args::flag("base", base)
+            + &args::flag("bandwidth", self.bandwidth)
+            + &self.known.words()
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -67,6 +81,7 @@ Examples:
   aep discover run.csv --base coulomb,viscous --json -   for scripts
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
+  aep discover run.csv --model-force tau_model           what your own model lacks
   aep discover run.csv --explain                         everything that was compared, and why
   aep discover run.csv --surrogates 20                   how often it would name what is not there
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
@@ -74,8 +89,6 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let base = args.base.checked()?;
-    let settings = args.run.settings(base)?;
     let loaded = match args.data.as_slice() {
         [] => crate::example::load()?,
         paths => args.mapping.read_all(paths)?,
@@ -84,6 +97,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         [] => None,
         paths => Some(args.mapping.read_all(paths)?),
     };
+    let base = args.mapping.base(args.base.as_ref(), &loaded)?;
+    let settings = args.run.settings(base)?;
     let watch = Watch::new(None);
     let quiet = global.quiet || args.results.own_stdout();
     let data = check(&loaded.recording);
@@ -92,7 +107,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
     progress.say("fitting the base model");
     progress.within(settings.time_limit);
     let mut discovery = discover(&family, &settings, &mut progress)?;
@@ -102,7 +117,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let go_on = !watch.is_interrupted();
     if let Some(others) = others.as_ref().filter(|_| go_on) {
         progress.say("confirming it on the other recordings");
-        let other = steps::family(&others.recording, args.bandwidth)?.with_stroke_of(&family);
+        let other = steps::family(&others.recording, args.bandwidth, &args.known.known()?)?.with_stroke_of(&family);
         steps::same_axes(&family, &other)?;
         let rungs = missing_physics::confirm(&other, &discovery.ladder, &settings)?;
         let found = Confirmed { recording: others.recording.name().to_owned(), rungs };
@@ -110,11 +125,14 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         discovery.confirmation = Some(found);
     }
     let mut alarms = String::new();
+    if args.surrogates.is_some() || args.experiment.is_some() {
+        steps::needs_plant(&family)?;
+    }
     if let Some(count) = args.surrogates.filter(|_| go_on)
         && let Some(last) = discovery.ladder.last()
     {
         let model = steps::model(&family, last)?;
-        let options = steps::options(args.bandwidth);
+        let options = steps::options(args.bandwidth, &args.known.known()?);
         let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
             progress.say(format!("surrogate {} of {count}", k + 1));
@@ -216,12 +234,12 @@ fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> Strin
 
 fn next(given: &Args, discovery: &Discovery) -> String {
     if discovery.verdict == Verdict::Ambiguous && given.experiment.is_none() {
-        let command = format!("aep discover {} --experiment next.csv", args::words(&given.data));
+        let command = format!("aep discover {} --experiment next.csv", given.words());
         return format!("\n{}\n", output::dim(&format!("What to run next: {command}")));
     }
     if given.results.html.is_some() {
         return String::new();
     }
-    let command = format!("aep discover {} --html report.html", args::words(&given.data));
+    let command = format!("aep discover {} --html report.html", given.words());
     format!("\n{}\n", output::dim(&format!("All this with plots: {command}")))
 }

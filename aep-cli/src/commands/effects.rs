@@ -17,6 +17,9 @@ pub struct Args {
     /// Say everything about this one
     #[arg(value_name = "EFFECT")]
     effect: Option<String>,
+    /// What a formula may hold: variables, operators and functions, for columns and for effects of your own
+    #[arg(long)]
+    formula: bool,
     /// Units and ranges of a rotary axis
     #[arg(long)]
     rotary: bool,
@@ -28,6 +31,7 @@ Examples:
   aep effects                                all of them, one line each
   aep effects stribeck                       everything about one
   aep effects --effects-file cogging.toml    with one of your own
+  aep effects --formula                      what a formula may hold
 
 A file with an effect of your own, cogging.toml:
 
@@ -39,10 +43,35 @@ A file with an effect of your own, cogging.toml:
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let axis = if args.rotary { Axis::Rotary } else { Axis::Linear };
     let text = match &args.effect {
+        _ if args.formula => formula(),
         None => list(),
         Some(name) => about(&known(&name.to_lowercase())?, axis)?,
     };
     if global.quiet { Ok(()) } else { output::print(&text) }
+}
+
+fn formula() -> String {
+    let listed = aep_formula::FUNCTIONS.iter().filter(|function| !function.about.is_empty());
+    let functions: Vec<&str> = listed.map(|function| function.about).collect();
+    let functions = format!("  {}\n", functions.join("\n  "));
+    let about = "\
+wherever a column is named:       duty*v_in_V, force_N - 9.81*m, `Motor force [N]`/2
+in an effect of your own:         x v a s t F (position, velocity, acceleration, sign of the velocity, time, force of
+                                  the drive), its parameters, and every column of the recording
+numbers and constants:            1.5e-3, pi, TAU, E; a column or a parameter of that name comes first
+operators, loosest first:         < <= > >= == !=   (1 where it holds, else 0)
+                                  + -
+                                  * / %             (% is the remainder)
+                                  ^ or **           (from the right; -x^2 is refused: write -(x^2) or (-x)^2)
+functions:
+";
+    let limits = format!(
+        "\nA formula has at most {} characters and {} brackets inside one another; an effect at most {} parameters.\n",
+        aep_formula::MOST_LENGTH,
+        aep_formula::MOST_DEPTH,
+        friction_ident::effects::formula::MOST_PARAMETERS,
+    );
+    heading("Formulas") + about + &functions + &limits
 }
 
 fn list() -> String {

@@ -87,7 +87,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 
 fn model(args: &Args) -> Result<Model, Failure> {
     match &args.model {
-        Some(path) => steps::read_model(path),
+        Some(path) => steps::read_plant(path),
         None => Ok(friction_ident::paper::table()?),
     }
 }

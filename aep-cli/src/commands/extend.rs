@@ -7,7 +7,7 @@ use missing_physics::measurement::check::check;
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{DataArgs, LimitArgs, OutputArgs, known};
+use crate::args::{DataArgs, KnownArgs, LimitArgs, OutputArgs, known};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
@@ -19,9 +19,11 @@ use crate::report::{Kind, Report};
 pub struct Args {
     #[command(flatten)]
     data: DataArgs,
+    #[command(flatten)]
+    known: KnownArgs,
     /// The model, as written by identify, extend or discover
-    #[arg(long, value_name = "MODEL.json")]
-    model: PathBuf,
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "model_force")]
+    model: Option<PathBuf>,
     /// The effect to add
     #[arg(long, value_name = "EFFECT")]
     add: String,
@@ -46,21 +48,24 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let model = steps::read_model(&args.model)?;
+    let watch = args.limit.watch();
+    let loaded = args.data.read()?;
+    let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;
     let added = known(&args.add.to_lowercase())?;
     let mut effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
     if effects.contains(&added) {
-        return Err(Failure::bad_input(format!("the model has '{added}' already"))
-            .in_file(&args.model)
-            .with_hint("'aep suggest' tells which other effect would help"));
+        let failure = Failure::bad_input(format!("the model has '{added}' already"));
+        let failure = match &args.model {
+            Some(path) => failure.in_file(path),
+            None => failure,
+        };
+        return Err(failure.with_hint("'aep suggest' tells which other effect would help"));
     }
     effects.push(added.clone());
-    let watch = args.limit.watch();
-    let loaded = args.data.read()?;
     let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?.or(model.known()))?;
     let before = steps::as_given(&family, &model)?;
     progress.say(format!("refitting with {added}"));
     let method = steps::method("aep")?;

@@ -8,7 +8,7 @@ use missing_physics::{Recording, Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
 
 use crate::app::Global;
-use crate::args::{Compared, DataArgs, EffectNames, LimitArgs, OutputArgs, TimeArgs};
+use crate::args::{Compared, DataArgs, EffectNames, KnownArgs, LimitArgs, OutputArgs, TimeArgs};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
@@ -24,9 +24,11 @@ use crate::stop::Watch;
 pub struct Args {
     #[command(flatten)]
     data: DataArgs,
-    /// Effects of the model; the mass is part of every model
-    #[arg(long, value_name = "EFFECTS")]
-    effects: EffectNames,
+    #[command(flatten)]
+    known: KnownArgs,
+    /// Effects of the model; the mass is part of every model, but beside --model-force only these are
+    #[arg(long, value_name = "EFFECTS", required_unless_present = "model_force")]
+    effects: Option<EffectNames>,
     /// Optimizer of the shape parameters
     #[arg(long, default_value = "aep", value_parser = PossibleValuesParser::new(ALGORITHMS.iter().map(|a| a.0)))]
     algorithm: String,
@@ -93,16 +95,17 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let effects = args.effects.checked()?;
     let watch = args.limit.watch();
     let loaded = args.data.read()?;
+    let effects = args.data.mapping().base(args.effects.as_ref(), &loaded)?;
     let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
     progress.say(format!("identifying {}", effects.join(" + ")));
     let method = steps::method(&args.algorithm)?;
     if args.horizon != Compared::Force {
+        steps::needs_plant(&family)?;
         return in_time(args, &loaded.recording, &family, &effects, (progress, quiet), watch);
     }
     let (fit, evaluations) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;

@@ -47,7 +47,7 @@ impl From<SimulationError> for Failure {
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let model = steps::read_model(&args.model)?;
+    let model = steps::read_plant(&args.model)?;
     let loaded = args.mapping.read(&args.input)?;
     check_axis(&model, &loaded)?;
     let motion = motion(&model, &loaded.recording)?;

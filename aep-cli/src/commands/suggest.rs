@@ -8,7 +8,7 @@ use missing_physics::measurement::check::check;
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{DataArgs, OutputArgs, RunArgs};
+use crate::args::{self, DataArgs, EffectNames, KnownArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading};
@@ -28,9 +28,11 @@ const RIVALS: usize = 3;
 pub struct Args {
     #[command(flatten)]
     data: DataArgs,
+    #[command(flatten)]
+    known: KnownArgs,
     /// The model, as written by identify, extend or discover
-    #[arg(long, value_name = "MODEL.json")]
-    model: PathBuf,
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "model_force")]
+    model: Option<PathBuf>,
     /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
@@ -50,16 +52,20 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let model = steps::read_model(&args.model)?;
-    let effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
-    let settings = args.run.settings(effects)?;
     let loaded = args.data.read()?;
+    let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;
+    let named = model.effects().iter().map(|name| (*name).to_owned()).collect();
+    let effects = args.data.mapping().base(Some(&EffectNames(named)), &loaded)?;
+    let settings = args.run.settings(effects)?;
     let watch = Watch::new(None);
     let quiet = global.quiet || args.results.own_stdout();
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth)?;
+    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?.or(model.known()))?;
     steps::same_axis(&family, &model)?;
+    if args.experiment.is_some() {
+        steps::needs_plant(&family)?;
+    }
     progress.say("fitting the model");
     progress.within(settings.time_limit);
     let mut discovery = suggest(&family, &settings, &mut progress)?;
@@ -97,9 +103,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let next = match likely {
         Some(best) => format!(
-            "Try it: aep extend {} --model {} --add {} -o better.json\n",
+            "Try it: aep extend {}{}{}{} --add {} -o better.json\n",
             args.data.words(),
-            args.model.display(),
+            args::flag("model", args.model.as_ref().map(|path| path.display())),
+            args::flag("bandwidth", args.bandwidth),
+            args.known.words(),
             best.effect
         ),
         None if words::is_cut(&discovery) => {

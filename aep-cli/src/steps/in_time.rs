@@ -24,7 +24,7 @@ pub fn identify_in_time(
     (algorithm, seed): (&str, u64),
     watch: Watch,
 ) -> Result<Simulated, Failure> {
-    let first = first_guess(family, effects, seed, watch)?;
+    let first = first_guess(family, effects, (recording, seed), watch)?;
     let free = all_free(&first);
     let horizon = (task.horizon)(interval(recording.time()));
     let mut problem =
@@ -41,7 +41,7 @@ pub fn identify_in_time(
 fn first_guess(
     family: &FrictionFamily,
     effects: &[String],
-    seed: u64,
+    (recording, seed): (&Recording, u64),
     watch: Watch,
 ) -> Result<Model, Failure> {
     let shown: Vec<String> = effects
@@ -53,7 +53,8 @@ fn first_guess(
     let values = model(family, &diagnosis::rung(family, &fit, &[]))?;
     let mut model = Model::new(family.axis(), values.mass())?;
     for name in effects {
-        model = model.with_effect(library().find(name)?)?;
+        let effect = library().find(name)?;
+        model = model.with_effect(effect.bound(recording).unwrap_or(effect))?;
         for address in model.addresses() {
             if let Ok(value) = values.get(&address) {
                 model.set(&address, value)?;

@@ -60,8 +60,14 @@ impl Desk {
 
     /// Runs `aep` with the words of `line`.
     pub fn aep(&self, line: &str) -> Run {
+        let words: Vec<String> = line.split_whitespace().map(str::to_owned).collect();
+        self.words(&words)
+    }
+
+    /// Runs `aep` with these words, which may hold blanks.
+    pub fn words(&self, words: &[String]) -> Run {
         let output = Command::new(env!("CARGO_BIN_EXE_aep"))
-            .args(line.split_whitespace())
+            .args(words)
             .current_dir(self.folder.path())
             .env_remove("NO_COLOR")
             .output()

@@ -9,4 +9,5 @@ mod help;
 mod loop_by_hand;
 mod manual;
 mod optimizers;
+mod own_model;
 mod plant;

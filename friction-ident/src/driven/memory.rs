@@ -60,6 +60,7 @@ impl Walk<'_> {
     /// Level that the memory of `term` adds.
     pub(super) fn remembered_by(&self, term: &Term) -> Vec<f64> {
         let mut walk = Walk {
+            beside: false,
             motion: self.motion,
             direction: self.direction.clone(),
             level_velocity: self.level_velocity.clone(),

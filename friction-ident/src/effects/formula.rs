@@ -9,18 +9,19 @@
 //! p = { unit = "m", low = 1e-3, high = 0.1, default = 0.012 }
 //! ```
 //!
-//! `force` is a force that resists the motion; `level` in its place adds to the friction level. A
-//! formula may use `x` (position), `v` (velocity), `s` (sign of the velocity), `t` (time), `F` (force
-//! of the drive), `pi` and the parameters. Parameters with `linear = true` are amplitudes: the law is
-//! proportional to them. A minus sign binds tighter than a power: write `exp(-1*x^2)`, for `exp(-x^2)` is
-//! `exp((-x)^2)`.
+//! `force` is a force that resists the motion; `level` in its place adds to the friction level. A formula may use `x`
+//! (position), `v` (velocity), `a` (acceleration), `s` (sign of the velocity), `t` (time), `F` (force of the drive), the
+//! parameters, `pi`, and any other name: a column of the recording. Parameters come first, so that one may be called `a`.
+//! Its language is that of [`aep_formula`]. Parameters with `linear = true` are amplitudes: the law is proportional to them.
 
 use std::collections::BTreeMap;
 
-use exmex::{Express, FlatEx};
+use missing_physics::Recording;
 use serde::Deserialize;
 
-use super::{About, Effect, Motion, Parameter, Parameters, Role, Scale, Slot, Smooth};
+use super::{
+    About, Effect, Motion, Parameter, Parameters, Role, Scale, Signal, Slot, Smooth, UnknownEffect,
+};
 use crate::axis::Quantity;
 
 /// Why a text is no effect.
@@ -34,23 +35,33 @@ pub enum FormulaError {
     #[error("effect '{0}' needs one law: force = \"...\" or level = \"...\"")]
     Law(String),
     /// The formula cannot be read.
-    #[error("the law '{law}' cannot be read: {reason}")]
+    #[error("the law of '{effect}': {reason}")]
     Syntax {
-        /// The law.
-        law: String,
-        /// What the parser says.
-        reason: String,
+        /// The effect.
+        effect: String,
+        /// What is wrong, and where.
+        reason: aep_formula::FormulaError,
     },
-    /// A name that is neither a variable nor a parameter.
+    /// More parameters than a search can tell apart.
     #[error(
-        "the law '{law}' uses '{name}', which is no parameter\nvariables: x, v, s, t, F, pi; add [parameters] {name} = {{ unit = .., low = .., high = .., default = .. }}"
+        "effect '{effect}' has {count} parameters\nat most {MOST_PARAMETERS} can be searched: fix some as numbers in the law"
     )]
-    Name {
-        /// The law.
-        law: String,
-        /// The unknown name.
-        name: String,
+    Parameters {
+        /// The effect.
+        effect: String,
+        /// How many.
+        count: usize,
     },
+    /// A name that another effect has.
+    #[error(
+        "'{0}' is the name of an effect of the library\ncall yours by another name, e.g. my-{0}"
+    )]
+    Taken(String),
+    /// A name that cannot stand in a list of effects.
+    #[error(
+        "'{0}' is no name of an effect\nuse lower-case letters, digits, - and _, and begin with a letter"
+    )]
+    BadName(String),
     /// A parameter that cannot be searched.
     #[error("parameter '{name}': {reason}")]
     Parameter {
@@ -87,23 +98,37 @@ struct FileParameter {
     meaning: String,
 }
 
+/// What formulas of the user name as their source.
+pub const REFERENCE: &str = "a formula of the user";
+/// Most parameters of an effect.
+pub const MOST_PARAMETERS: usize = 16;
+/// Prefix of the channels of a recording that hold columns for formulas.
+pub const COLUMN: &str = "column ";
+
 /// Where a name of the formula gets its value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Source {
     Position,
     Velocity,
+    Acceleration,
     Sign,
     Time,
     Drive,
-    Pi,
+    Number(f64),
     Parameter(usize),
+    Column(usize),
 }
 
 /// See the module.
+#[derive(Clone)]
 pub struct Formula {
     about: &'static About,
-    law: FlatEx<f64>,
+    law: aep_formula::Formula,
     sources: Vec<Source>,
+    /// Names of the columns that it reads.
+    columns: Vec<String>,
+    /// Their values; empty until a recording is known.
+    signals: Vec<Signal>,
 }
 
 /// Reads an effect. It stays in memory for the rest of the program: models refer to effects for as
@@ -113,15 +138,20 @@ pub struct Formula {
 /// [`FormulaError`], with what to change.
 pub fn read(text: &str) -> Result<&'static dyn Effect, FormulaError> {
     let file: File = toml::from_str(text).map_err(|error| FormulaError::File(error.to_string()))?;
+    check_name(&file.name)?;
     let (text, slot) = match (&file.force, &file.level) {
         (Some(force), None) => (force, Slot::SmoothForce),
         (None, Some(level)) => (level, Slot::FrictionLevel),
         _ => return Err(FormulaError::Law(file.name)),
     };
-    let law = exmex::parse::<f64>(text)
-        .map_err(|error| FormulaError::Syntax { law: text.clone(), reason: error.to_string() })?;
-    let sources = law.var_names().iter().map(|name| source(name, text, &file));
-    let sources = sources.collect::<Result<Vec<_>, _>>()?;
+    let count = file.parameters.len();
+    if count > MOST_PARAMETERS {
+        return Err(FormulaError::Parameters { effect: file.name, count });
+    }
+    let law = aep_formula::Formula::parse(text)
+        .map_err(|reason| FormulaError::Syntax { effect: file.name.clone(), reason })?;
+    let mut columns = Vec::new();
+    let sources = law.names().iter().map(|name| source(name, &file, &mut columns)).collect();
     let parameters = file.parameters.iter().map(|(name, p)| parameter(name, p));
     let parameters: Vec<Parameter> = parameters.collect::<Result<_, _>>()?;
     let about = About {
@@ -131,29 +161,53 @@ pub fn read(text: &str) -> Result<&'static dyn Effect, FormulaError> {
         parameters: Vec::leak(parameters),
         slots: Vec::leak(vec![slot]),
         shows: keep(&file.shows),
-        reference: "a formula of the user",
+        reference: REFERENCE,
     };
-    let formula = Formula { about: Box::leak(Box::new(about)), law, sources };
+    let about = Box::leak(Box::new(about));
+    let formula = Formula { about, law, sources, columns, signals: Vec::new() };
     formula.check_amplitudes()?;
     Ok(Box::leak(Box::new(formula)))
+}
+
+/// Whether an effect of the user's may be called so.
+///
+/// # Errors
+/// The library has an effect of that name, or it cannot stand in a list.
+pub fn check_name(name: &str) -> Result<(), FormulaError> {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+    let named = name.starts_with(|c: char| c.is_ascii_lowercase()) && name.chars().all(plain);
+    if !named {
+        return Err(FormulaError::BadName(name.to_owned()));
+    }
+    let found: Result<_, UnknownEffect> = super::find(name);
+    if found.is_ok() || ["mass", "timing", "none"].contains(&name) {
+        return Err(FormulaError::Taken(name.to_owned()));
+    }
+    Ok(())
 }
 
 fn keep(text: &str) -> &'static str {
     String::leak(text.to_owned())
 }
 
-fn source(name: &str, law: &str, file: &File) -> Result<Source, FormulaError> {
+fn source(name: &str, file: &File, columns: &mut Vec<String>) -> Source {
     if let Some(index) = file.parameters.keys().position(|parameter| parameter == name) {
-        return Ok(Source::Parameter(index));
+        return Source::Parameter(index);
     }
     match name {
-        "x" => Ok(Source::Position),
-        "v" => Ok(Source::Velocity),
-        "s" => Ok(Source::Sign),
-        "t" => Ok(Source::Time),
-        "F" => Ok(Source::Drive),
-        "pi" => Ok(Source::Pi),
-        _ => Err(FormulaError::Name { law: law.to_owned(), name: name.to_owned() }),
+        "x" => Source::Position,
+        "v" => Source::Velocity,
+        "a" => Source::Acceleration,
+        "s" => Source::Sign,
+        "t" => Source::Time,
+        "F" => Source::Drive,
+        _ => aep_formula::constant(name).map_or_else(
+            || {
+                columns.push(name.to_owned());
+                Source::Column(columns.len() - 1)
+            },
+            Source::Number,
+        ),
     }
 }
 
@@ -203,31 +257,34 @@ fn quantity(unit: &str) -> Option<Quantity> {
 }
 
 impl Formula {
-    /// The law where the variables are `[x, v, s, t, F]`.
-    fn evaluate(&self, p: &[f64], at: [f64; 5]) -> f64 {
-        let value = |source: &Source| match *source {
+    /// The law where the variables are `[x, v, a, s, t, F]`; `columns` are the values of those that it reads.
+    fn evaluate(&self, p: &[f64], at: [f64; 6], columns: &[f64], work: &mut Work) -> f64 {
+        work.values.clear();
+        work.values.extend(self.sources.iter().map(|source| match *source {
             Source::Position => at[0],
             Source::Velocity => at[1],
-            Source::Sign => at[2],
-            Source::Time => at[3],
-            Source::Drive => at[4],
-            Source::Pi => std::f64::consts::PI,
+            Source::Acceleration => at[2],
+            Source::Sign => at[3],
+            Source::Time => at[4],
+            Source::Drive => at[5],
+            Source::Number(number) => number,
             Source::Parameter(k) => p[k],
-        };
-        let values: Vec<f64> = self.sources.iter().map(value).collect();
-        self.law.eval(&values).unwrap_or(f64::NAN)
+            Source::Column(k) => columns.get(k).copied().unwrap_or(0.0),
+        }));
+        self.law.value_on(&work.values, &mut work.stack)
     }
 
     /// The law must be proportional to what it calls linear, all of that together.
     fn check_amplitudes(&self) -> Result<(), FormulaError> {
         let table = self.about.parameters;
-        let at = [0.0123, 0.0456, 1.0, 0.789, 12.3];
+        let at = [0.0123, 0.0456, 0.321, 1.0, 0.789, 12.3];
+        let columns = vec![0.654; self.columns.len()];
         let scaled = |by: f64| -> f64 {
             let p: Vec<f64> = table
                 .iter()
                 .map(|p| if p.role == Role::Amplitude { by * (p.default + 0.1) } else { p.default })
                 .collect();
-            self.evaluate(&p, at)
+            self.evaluate(&p, at, &columns, &mut Work::default())
         };
         let (once, twice) = (scaled(1.0), scaled(2.0));
         match table.iter().find(|p| p.role == Role::Amplitude) {
@@ -243,17 +300,53 @@ impl Formula {
 
     fn add(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut [f64]) {
         let mut values = vec![0.0; self.about.parameters.len()];
+        let (mut work, mut near) = (Work::default(), vec![0; self.signals.len()]);
+        let mut columns = vec![0.0; self.signals.len()];
         for (i, out) in out.iter_mut().enumerate() {
             values.iter_mut().enumerate().for_each(|(k, value)| *value = p.get(k)[i]);
-            let at = [m.position[i], m.velocity[i], m.direction[i], m.time[i], m.drive_force[i]];
-            *out += self.evaluate(&values, at);
+            for ((column, signal), near) in columns.iter_mut().zip(&self.signals).zip(&mut near) {
+                *column = signal.at(m.time[i], near);
+            }
+            let at = [
+                m.position[i],
+                m.velocity[i],
+                m.acceleration[i],
+                m.direction[i],
+                m.time[i],
+                m.drive_force[i],
+            ];
+            *out += self.evaluate(&values, at, &columns, &mut work);
         }
     }
+}
+
+/// Room for the evaluation of a law.
+#[derive(Default)]
+struct Work {
+    values: Vec<f64>,
+    stack: Vec<f64>,
 }
 
 impl Effect for Formula {
     fn about(&self) -> &'static About {
         self.about
+    }
+
+    fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    fn is_bound(&self) -> bool {
+        self.signals.len() == self.columns.len()
+    }
+
+    fn bound(&self, recording: &Recording) -> Option<&'static dyn Effect> {
+        if self.columns.is_empty() {
+            return None;
+        }
+        let signal = |name: &String| Signal::of(recording, &format!("{COLUMN}{name}"));
+        let signals = self.columns.iter().map(signal).collect::<Option<Vec<_>>>()?;
+        Some(Box::leak(Box::new(Self { signals, ..self.clone() })))
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
@@ -316,9 +409,32 @@ mod tests {
     }
 
     #[test]
+    fn other_names_are_columns_of_the_recording() {
+        let effect = read(&COGGING.replace("x / p", "x / p + q*v")).unwrap();
+        assert_eq!(effect.columns(), ["q"]);
+        let time: Vec<f64> = (0..20).map(f64::from).collect();
+        let values = time.iter().map(|t| 0.5 * t).collect();
+        let channel = missing_physics::Channel::new("column q", "", values);
+        let recording = Recording::new("run", time.clone(), vec![channel]).unwrap();
+        let bound = effect.bound(&recording).unwrap();
+        let point = Point { time: 3.0, ..Point::at(0.003, 0.1) };
+        let law = 3.0 * (std::f64::consts::TAU * 0.003 / 0.012 + 1.5 * 0.1).sin();
+        assert!((smooth(bound, &[3.0, 0.012], point).0 - law).abs() < 1e-12);
+        let without = Recording::new("run", time, vec![]).unwrap();
+        assert!(effect.bound(&without).is_none());
+    }
+
+    #[test]
     fn what_is_wrong_is_said() {
-        assert!(refused(&COGGING.replace("x / p", "x / q")).contains("uses 'q'"));
-        assert!(refused(&COGGING.replace("sin(2", "sin((2")).contains("cannot be read"));
+        assert!(refused(&COGGING.replace("sin(2", "sin((2")).contains("not closed"));
+        assert!(refused(&COGGING.replace("sin(2", "sine(2")).contains("no function 'sine'"));
+        assert!(refused(&COGGING.replace("cogging", "stribeck")).contains("of the library"));
+        assert!(refused(&COGGING.replace("cogging", "stribeck:free")).contains("no name"));
+        assert!(refused(&COGGING.replace("cogging", "My Effect")).contains("no name"));
+        let one =
+            |k: i32| format!("b{k} = {{ unit = \"1\", low = 0.0, high = 1.0, default = 0.5 }}");
+        let many = (0..17).map(one).collect::<Vec<String>>().join("\n");
+        assert!(refused(&(COGGING.to_owned() + &many)).contains("19 parameters"));
         assert!(
             refused(&COGGING.replace("\"m\"", "\"furlong\"")).contains("unknown unit 'furlong'")
         );

@@ -1,5 +1,6 @@
 //! The effects that a program knows by name: those built in, and a user's own.
 
+use super::beside::BESIDE;
 use super::{ALL, Effect};
 
 /// A name that no effect has.
@@ -55,7 +56,7 @@ impl Library {
         &self.effects
     }
 
-    /// The effect called `name`: `effect` or `effect:form`.
+    /// The effect called `name`: `effect` or `effect:form`; those that stand beside a given force are found, too.
     ///
     /// # Errors
     /// [`UnknownEffect`] with the nearest name and the list of all.
@@ -63,7 +64,8 @@ impl Library {
         let mut all = self
             .effects
             .iter()
-            .flat_map(|effect| std::iter::once(*effect).chain(effect.forms().iter().copied()));
+            .flat_map(|effect| std::iter::once(*effect).chain(effect.forms().iter().copied()))
+            .chain(BESIDE.iter().copied());
         all.find(|effect| effect.about().name == name).ok_or_else(|| self.unknown(name))
     }
 

@@ -15,10 +15,12 @@ mod memory;
 mod past;
 pub mod search;
 mod sensor;
+mod signal;
 
 pub mod actuator_lag;
 pub mod asymmetry;
 pub mod backlash;
+pub mod beside;
 pub mod coulomb;
 pub mod drift;
 pub mod encoder;
@@ -34,6 +36,7 @@ pub mod offset;
 pub mod position_friction;
 pub mod presliding;
 pub mod quadratic_drag;
+pub mod regressor;
 pub mod reversal_decay;
 pub mod ripple;
 pub mod rising_static_friction;
@@ -47,6 +50,8 @@ pub mod viscous_stroke;
 #[cfg(test)]
 mod testing;
 
+use missing_physics::Recording;
+
 use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
@@ -59,6 +64,7 @@ pub use memory::{Memory, Recalled, Taken};
 pub use past::Past;
 pub use search::{Periodic, Repeats, Trials};
 pub use sensor::{Sensor, Shown};
+pub use signal::Signal;
 
 /// A physical effect. Every hook adds to its output, lane by lane; all slices are equally long.
 ///
@@ -142,6 +148,21 @@ pub trait Effect: Sync + Send {
     /// Whether a motion can show it beside a mass that is not known: a gain of the motor scales all parameters alike.
     fn is_determined(&self) -> bool {
         true
+    }
+
+    /// Columns of the recording that its law reads.
+    fn columns(&self) -> &[String] {
+        &[]
+    }
+
+    /// Whether the columns that its law reads are known.
+    fn is_bound(&self) -> bool {
+        self.columns().is_empty()
+    }
+
+    /// The same effect with the columns of a recording that its law reads; nothing where it reads none.
+    fn bound(&self, _recording: &Recording) -> Option<&'static dyn Effect> {
+        None
     }
 
     /// Whether a comparison of forces along a measured motion can show it at all, apart from other forms of it.

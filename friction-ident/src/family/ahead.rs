@@ -92,9 +92,17 @@ pub(super) struct View<'a> {
 }
 
 impl FrictionFamily {
+    /// From how many of a term's trials it is fitted.
+    pub(super) fn starts(&self, term: usize) -> usize {
+        if self.is_second_body(term) { SECOND_BODIES } else { 1 }
+    }
+
     /// Shapes of a term to begin with: a fit finds the rest of the way.
-    fn few_shapes(&self, term: usize) -> Vec<Vec<f64>> {
+    pub(super) fn few_shapes(&self, term: usize) -> Vec<Vec<f64>> {
         let about = &self.terms[term];
+        if about.parameters.iter().all(|p| p.role == Role::Amplitude) {
+            return vec![Vec::new()];
+        }
         if self.periodic(term).is_some_and(|law| law.ranked) {
             // A fit moves a period by more than the half of a line that lies between two of these.
             let longest = (self.stroke.1 - self.stroke.0) / LEAST_PERIODS;
@@ -216,12 +224,7 @@ impl Ahead for View<'_> {
     }
 
     fn rivals(&self) -> Vec<Rival> {
-        let term = |name: &str| self.family.terms.iter().position(|term| term.name == name);
-        let rival = |free: &Free| {
-            let kin = free.kin.iter().filter_map(|name| term(name)).collect();
-            Some(Rival { term: term(free.effect.about().name)?, words: free.words, kin })
-        };
-        RIVALS.iter().filter_map(rival).collect()
+        rivals(self.family)
     }
 
     fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
@@ -229,12 +232,22 @@ impl Ahead for View<'_> {
     }
 
     fn starts(&self, term: usize) -> usize {
-        if self.family.is_second_body(term) { SECOND_BODIES } else { 1 }
+        self.family.starts(term)
     }
 
     fn is_candidate(&self, term: usize) -> bool {
         self.family.is_candidate(term)
     }
+}
+
+/// What stands for no effect: see [`crate::effects::free`].
+pub(super) fn rivals(family: &FrictionFamily) -> Vec<Rival> {
+    let term = |name: &str| family.terms.iter().position(|term| term.name == name);
+    let rival = |free: &Free| {
+        let kin = free.kin.iter().filter_map(|name| term(name)).collect();
+        Some(Rival { term: term(free.effect.about().name)?, words: free.words, kin })
+    };
+    RIVALS.iter().filter_map(rival).collect()
 }
 
 /// `count` values within the limits, evenly on the parameter's scale; one alone is where a search starts.

@@ -21,6 +21,9 @@ mod tracking;
 const LENGTHS: [f64; 3] = [0.05, 0.1, 0.2];
 /// Fewest samples of a window.
 const SAMPLES: f64 = 10.0;
+/// Why nothing is simulated beside a given force.
+const GIVEN: &str = "the model's force is given over time: its motion cannot be simulated, so that there are no windows \
+                     and no free run";
 /// A free run whose error is this many times that of the longest windows has drifted.
 const DRIFTED: f64 = 5.0;
 
@@ -43,11 +46,18 @@ impl FrictionFamily {
         let model = self.model(fitted)?;
         let split = Split::new(self.target.len(), self.blocks.clone());
         let mut all = SideBySide { views: vec![self.force_view(fitted, &split)], ..<_>::default() };
-        for length in lengths(self.recording.interval()) {
+        let lengths =
+            lengths(self.recording.interval()).into_iter().filter(|_| self.given.is_none());
+        for length in lengths {
             match self.windows(&model, length, &split) {
                 Ok(view) => all.views.push(view),
                 Err(note) => all.notes.push(note),
             }
+        }
+        if self.given.is_some() {
+            // A force that is given over time moves nothing.
+            all.notes.push(GIVEN.to_owned());
+            return Ok(all);
         }
         let longest = all.views.last().map_or(f64::NAN, |view| view.metrics.validation.rms);
         match self.free_run(&model, longest, &split) {

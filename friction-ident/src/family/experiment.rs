@@ -212,7 +212,8 @@ impl FrictionFamily {
         noise: f64,
     ) -> Result<Separation, String> {
         let bandwidth = Some(self.prepared.bandwidth);
-        let options = Options { bandwidth, library: self.library.clone() };
+        let options =
+            Options { bandwidth, library: self.library.clone(), known: self.known.clone() };
         let mut all = Vec::new();
         for plant in models {
             let recording = self.simulated(plant, &motion.reference, room)?;

@@ -4,7 +4,7 @@ use missing_physics::Fitted;
 use missing_physics::family::Trial;
 
 use super::FrictionFamily;
-use crate::effects::AsFound;
+use crate::effects::{AsFound, Effect};
 
 /// Each form and the more flexible one that takes its place before another effect is named.
 const FLEXIBLE: [(&str, &str); 13] = [
@@ -118,7 +118,7 @@ impl FrictionFamily {
             }
             "backlash:two-mass" => {
                 let (count, deviations, share) = GAPS;
-                let least = deviations * self.ahead.as_ref()?.predictor.noise().position;
+                let least = deviations * self.position_deviation();
                 let most = (share * (self.stroke.1 - self.stroke.0)).max(2.0 * least);
                 let line = spread((count, least, most));
                 line.iter().map(|b| vec![("b", *b), ("zeta", DAMPING.0)]).collect()
@@ -135,9 +135,12 @@ impl FrictionFamily {
         shapes: &[Vec<(&str, f64)>],
     ) -> Vec<Trial> {
         let parameters = &self.terms[term].parameters;
-        let mass = model.values.first().copied().unwrap_or(1.0);
-        let level = self.value(model, "coulomb", "F_C").unwrap_or(0.0);
-        let damping = self.value(model, "viscous", "F_v").unwrap_or(0.0);
+        let mass = self.mass_of(model);
+        let own = |term: &str, name: &str| self.value(model, term, name).unwrap_or(0.0);
+        let (level, damping) = match &self.given {
+            Some(given) => (given.level, given.damping),
+            None => (own("coulomb", "F_C"), own("viscous", "F_v")),
+        };
         let reduced = mass * SECOND_MASS * (1.0 - SECOND_MASS);
         let stiffness = (std::f64::consts::TAU * CONTACT).powi(2) * reduced;
         let mut trials = Vec::new();
@@ -146,9 +149,13 @@ impl FrictionFamily {
         for &share in shares {
             for shape in shapes {
                 let mut base = model.clone();
-                base.values[0] = mass * (1.0 - SECOND_MASS);
-                self.change(&mut base, "coulomb", "F_C", |level| level * (1.0 - share));
-                self.change(&mut base, "viscous", "F_v", |damping| damping * (1.0 - share));
+                if self.given.is_none() && !self.terms[0].parameters.is_empty() {
+                    base.values[0] = mass * (1.0 - SECOND_MASS);
+                }
+                if self.given.is_none() {
+                    self.change(&mut base, "coulomb", "F_C", |level| level * (1.0 - share));
+                    self.change(&mut base, "viscous", "F_v", |damping| damping * (1.0 - share));
+                }
                 let value = |name: &str| match name {
                     "m_L" => Some(mass * SECOND_MASS),
                     "F_L" => Some(level * share),
@@ -189,9 +196,16 @@ impl FrictionFamily {
                 self.change(&mut other, &name, length, |value| value * factor);
                 for (load, base, level) in friction.iter().filter(|_| share.is_some()) {
                     let of = |term: &str, name: &str| self.value(model, term, name).unwrap_or(0.0);
-                    let (total, share) = (of(&name, load) + of(base, level), share.unwrap_or(0.0));
+                    let fixed = match &self.given {
+                        Some(given) if *base == "coulomb" => given.level,
+                        Some(given) => given.damping,
+                        None => of(&name, load) + of(base, level),
+                    };
+                    let (total, share) = (fixed, share.unwrap_or(0.0));
                     self.change(&mut other, &name, load, |_| total * share);
-                    self.change(&mut other, base, level, |_| total * (1.0 - share));
+                    if self.given.is_none() {
+                        self.change(&mut other, base, level, |_| total * (1.0 - share));
+                    }
                 }
                 all.push(other);
             }
@@ -215,7 +229,7 @@ impl FrictionFamily {
         };
         let each = |other: &&str| {
             let to = self.terms.iter().position(|term| term.name == **other)?;
-            let deviation = self.ahead.as_ref()?.predictor.noise().position;
+            let deviation = self.position_deviation();
             let value = |parameter: &str| match parameter {
                 "f" => (of("k") / of("m_L").max(f64::MIN_POSITIVE)).sqrt() / tau,
                 "k" => of("m_L") * (tau * of("f")).powi(2),
@@ -231,18 +245,35 @@ impl FrictionFamily {
 
     /// A term that is no such effect as it was fitted, and why.
     pub(super) fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
-        model.terms.iter().enumerate().find_map(|(place, term)| {
-            let effect = self.effects[term.checked_sub(1)?];
-            let least: Vec<f64> = self.terms[*term].parameters.iter().map(|p| p.lower).collect();
-            let found = AsFound {
-                values: &model.values[model.range(self, place)],
-                least: &least,
-                mass: model.values[0],
-                force: self.force(),
-            };
-            let why = effect.refused(&found)?;
-            Some((*term, format!("{}{why}", effect.about().name)))
+        let vanished = self.given.as_ref().and_then(|given| given.vanishes(self, model));
+        vanished.or_else(|| {
+            model.terms.iter().enumerate().find_map(|(place, term)| {
+                let effect = self.effects[term.checked_sub(1)?];
+                let (values, least) =
+                    self.in_full(effect, *term, &model.values[model.range(self, place)]);
+                let found = AsFound {
+                    values: &values,
+                    least: &least,
+                    mass: self.mass_of(model),
+                    force: self.force(),
+                };
+                let why = effect.refused(&found)?;
+                Some((*term, format!("{}{why}", effect.about().name)))
+            })
         })
+    }
+
+    /// Values of a term with those that are known from elsewhere, in the order of its effect's table, and the limits of
+    /// their search below.
+    fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let parameters = &self.terms[term].parameters;
+        let table = effect.about().parameters.iter().filter(|p| !super::limits::is_fixed(p));
+        table
+            .filter_map(|p| match parameters.iter().position(|free| free.name == p.name) {
+                Some(k) => Some((fitted[k], parameters[k].lower)),
+                None => Some((self.known_value(effect, p.name)?, 0.0)),
+            })
+            .unzip()
     }
 
     /// Rms of the recorded force.

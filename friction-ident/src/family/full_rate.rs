@@ -7,18 +7,15 @@ use missing_physics::family::FullRate;
 
 use super::FrictionFamily;
 use crate::axis::Quantity;
-use crate::driven::force_along;
-use crate::model::Model;
 
 /// Samples around rest that are left out: the smoother still rings there.
 const RINGING: usize = 20;
 
-/// Recorded force less what `model` requires along the measured motion, with the positions along which
+/// Recorded force less `force`, what a model requires along the measured motion, with the positions along which
 /// it may be periodic. Up to the smoother's cut-off, twice the comparison's, the motion is known.
-pub fn full_rate(family: &FrictionFamily, model: &Model) -> FullRate {
+pub fn full_rate(family: &FrictionFamily, force: &[f64]) -> FullRate {
     let p = &family.prepared;
-    let force = family.driven(|motion| force_along(model, motion));
-    let residual: Vec<f64> = p.force.iter().zip(&force).map(|(a, b)| a - b).collect();
+    let residual: Vec<f64> = p.force.iter().zip(force).map(|(a, b)| a - b).collect();
     let finite = residual.iter().all(|value| value.is_finite());
     let residual = if finite { residual } else { vec![0.0; force.len()] };
     let mut used: Vec<bool> = p.moving.iter().map(|moving| *moving > 0.0).collect();

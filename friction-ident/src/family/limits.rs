@@ -83,6 +83,37 @@ impl Limits {
         }
     }
 
+    /// How much earlier than the recorded force a given one is: part of every model beside it.
+    pub fn timing(&self) -> Term {
+        let most = super::given::MOST_SHIFT * self.interval;
+        let parameter = Parameter {
+            name: "shift".into(),
+            unit: "s".into(),
+            role: Role::Amplitude,
+            lower: -most,
+            upper: most,
+            scale: Scale::Linear,
+            start: 0.5 * self.interval,
+        };
+        let square = self.interval * self.interval;
+        let smoothing = Parameter {
+            name: "smoothing".into(),
+            unit: "s^2".into(),
+            // Less than none is noise; it must be possible, so that none is no limit.
+            lower: -4.0 * square,
+            upper: super::given::MOST_SMOOTHING * square,
+            start: 10.0 * square,
+            ..parameter.clone()
+        };
+        Term {
+            name: "timing".into(),
+            title: "shift in time of the given force, and how much it was smoothed".into(),
+            equation: "F_model(t + shift) - 1/2 smoothing F_model''(t + shift)".into(),
+            parameters: vec![parameter, smoothing],
+            always: true,
+        }
+    }
+
     /// An effect as a term; parameters that are not fitted are left out.
     pub fn term(&self, about: &About) -> Term {
         let fitted = about.parameters.iter().filter(|parameter| !is_fixed(parameter));

@@ -11,6 +11,7 @@ mod filter;
 mod forms;
 mod full_rate;
 mod generic;
+mod given;
 mod hold;
 mod limits;
 mod plots;
@@ -37,9 +38,11 @@ pub use preparation::{PreparationError, Prepared};
 
 use crate::axis::Axis;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
+use crate::effects::beside::{BESIDE, MODEL_FORCE};
 use crate::effects::free::{self, RIVALS, Span};
-use crate::effects::{Effect, Library, Periodic, Repeats, Slot, search};
-use crate::model::{MASS, Model, ModelError, address};
+use crate::effects::{Effect, Library, Periodic, Repeats, Slot, formula, search};
+use crate::known::Known;
+use crate::model::{MASS, Model, ModelError, SHIFT, SMOOTHING, Timing, address};
 
 /// What the lighter smoother does to the motion, as a multiple of what the heavier one does beyond it.
 const DOUBT: f64 = 1.0 / (preparation::SMOOTHER / preparation::HEAVIER - 1.0);
@@ -51,6 +54,8 @@ pub struct Options {
     pub bandwidth: Option<f64>,
     /// Effects that may be in a model.
     pub library: Library,
+    /// Parameters that are known from elsewhere.
+    pub known: Known,
 }
 
 /// See the module.
@@ -60,6 +65,7 @@ pub struct FrictionFamily {
     prepared: Prepared,
     axis: Axis,
     library: Library,
+    known: Known,
     effects: Vec<&'static dyn Effect>,
     /// How the law of each effect repeats itself.
     periodic: Vec<Option<Periodic>>,
@@ -74,6 +80,8 @@ pub struct FrictionFamily {
     stroke: (f64, f64),
     hold: Option<HoldChoice>,
     other_hold: Option<Box<Self>>,
+    /// The force that another model gives, where the recording has one: the models here stand beside it.
+    given: Option<given::Given>,
     ahead: Option<ahead::OneAhead>,
     thinned: Option<ahead::OneAhead>,
     top_speed: f64,
@@ -86,7 +94,10 @@ impl FrictionFamily {
     /// # Errors
     /// A channel is missing or constant, or too little of the recording moves.
     pub fn new(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
+        let is_given = recording.channel(MODEL_FORCE).is_some();
         match recording.known_hold() {
+            // Beside a given force the shift in time of the two is fitted in its place.
+            _ if is_given => Self::as_recorded(recording, options),
             Some(_) => Self::as_recorded(recording, options),
             None => hold::decided(recording, options),
         }
@@ -98,7 +109,13 @@ impl FrictionFamily {
     }
 
     fn as_recorded(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
-        let prepared = Prepared::new(recording, options.bandwidth)?;
+        let given = recording.channel(MODEL_FORCE).is_some();
+        let prepared = if given {
+            let bandwidth = options.bandwidth.unwrap_or(given::bandwidth(recording.interval()));
+            Prepared::new(recording, Some(bandwidth))?.without_rests()?
+        } else {
+            Prepared::new(recording, options.bandwidth)?
+        };
         let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
         let axis = if rotary { Axis::Rotary } else { Axis::Linear };
         let stroke = prepared
@@ -106,13 +123,20 @@ impl FrictionFamily {
             .iter()
             .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
         let main = options.library.effects().iter().copied().filter(|effect| effect.suits(axis));
+        let beside = BESIDE.iter().copied().filter(|_| given);
         let effects: Vec<&'static dyn Effect> = main
             .flat_map(|effect| std::iter::once(effect).chain(effect.forms().iter().copied()))
+            .chain(beside)
             .chain(RIVALS.iter().map(|free| free.effect))
+            .map(|effect| effect.bound(recording).unwrap_or(effect))
             .collect();
         let limits = limits::Limits::of(&prepared, axis, stroke);
-        let mut terms = vec![limits.mass()];
+        let mut terms = vec![if given { limits.timing() } else { limits.mass() }];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
+        if given {
+            given::as_deviations(&mut terms);
+        }
+        options.known.apply(&mut terms)?;
         let coordinates = coordinates::coordinates(&prepared, axis, recording);
         let regimes = regimes::regimes(&prepared, stroke);
         let mut family = Self {
@@ -120,6 +144,7 @@ impl FrictionFamily {
             axis,
             library: options.library.clone(),
             periodic: effects.iter().map(|effect| search::periodic(*effect)).collect(),
+            known: options.known.clone(),
             effects,
             terms,
             time: prepared.sample(&prepared.time),
@@ -132,14 +157,25 @@ impl FrictionFamily {
             stroke,
             hold: None,
             other_hold: None,
+            given: None,
             ahead: None,
             thinned: None,
             top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
             prepared,
         };
+        family.check_laws()?;
+        family.given = given::Given::of(&family);
         let (simple, doubt) = family.disagreement();
         family.doubt = doubt;
-        let mass = simple[0].max(0.02 * family.terms[0].parameters[0].start);
+        if family.given.is_some() {
+            family.weigh_given();
+            return Ok(family);
+        }
+        let mass = match (family.known.fixed.get(MASS), family.terms[0].parameters.first()) {
+            (Some(mass), _) => *mass,
+            (None, Some(mass)) => simple[0].max(0.02 * mass.start),
+            (None, None) => simple[0],
+        };
         family.ahead = ahead::OneAhead::new(recording, mass, simple[1].max(0.0));
         family.thinned = family.ahead.as_ref().and_then(ahead::OneAhead::thinned);
         Ok(family)
@@ -169,21 +205,36 @@ impl FrictionFamily {
     /// # Errors
     /// The terms do not fit together.
     pub fn model(&self, fitted: &Fitted) -> Result<Model, ModelError> {
-        let mut mass = 1.0;
+        let mut mass = self.known.fixed.get(MASS).copied().unwrap_or(1.0);
+        let known = |address: &str| self.known.fixed.get(address).copied().unwrap_or(0.0);
+        let mut timing = Timing { shift: known(SHIFT), smoothing: known(SMOOTHING) };
         let mut effects = Vec::new();
         for (position, &index) in fitted.terms.iter().enumerate() {
             let values = &fitted.values[fitted.range(self, position)];
             match index {
-                0 => mass = values[0],
+                0 => {
+                    for (parameter, value) in self.terms[0].parameters.iter().zip(values) {
+                        match parameter.name.as_str() {
+                            "shift" => timing.shift = *value,
+                            "smoothing" => timing.smoothing = *value,
+                            _ => mass = *value,
+                        }
+                    }
+                }
                 _ => effects.push((self.effects[index - 1], values)),
             }
         }
-        let mut model = Model::new(self.axis, mass)?;
+        let mut model = match &self.given {
+            Some(_) => Model::beside(self.axis, timing)?,
+            None => Model::new(self.axis, mass)?,
+        };
         for (effect, values) in effects {
             model = model.with_effect(effect)?;
             let mut values = values.iter();
             for parameter in effect.about().parameters {
-                let value = if limits::is_fixed(parameter) {
+                let value = if let Some(known) = self.known_value(effect, parameter.name) {
+                    Some(known)
+                } else if limits::is_fixed(parameter) {
                     self.fixed(parameter.name)
                 } else {
                     values.next().copied()
@@ -201,7 +252,10 @@ impl FrictionFamily {
     /// # Errors
     /// An effect of the plant is not in the family's library.
     pub fn fitted(&self, model: &Model) -> Result<Fitted, ModelError> {
-        let mut fitted = Fitted { terms: vec![0], values: vec![model.mass()] };
+        let mut fitted = match model.timing() {
+            Some(timing) => self.timed(timing),
+            None => self.bare(model.mass()),
+        };
         for term in model.terms() {
             let found = self.effects.iter().position(|e| e.about().name == term.name());
             let Some(index) = found else {
@@ -212,11 +266,118 @@ impl FrictionFamily {
             };
             fitted.terms.push(index + 1);
             let parameters = term.effect().about().parameters.iter().zip(term.values());
-            fitted
-                .values
-                .extend(parameters.filter(|(p, _)| !limits::is_fixed(p)).map(|(_, value)| *value));
+            let is_free = |p: &crate::effects::Parameter| {
+                !limits::is_fixed(p) && self.known_value(term.effect(), p.name).is_none()
+            };
+            fitted.values.extend(parameters.filter(|(p, _)| is_free(p)).map(|(_, value)| *value));
         }
         Ok(fitted)
+    }
+
+    /// The force that a model requires along the measured motion, sample by sample.
+    fn required(&self, fitted: &Fitted) -> Result<Vec<f64>, ModelError> {
+        let model = self.model(fitted)?;
+        match &self.given {
+            Some(given) => given.required(self, &model),
+            None => Ok(self.driven(|motion| force_along(&model, motion))),
+        }
+    }
+
+    /// Whether the models of this family stand beside a force that another model gives for every sample
+    /// (a channel `model_force`): they have no mass and cannot be simulated.
+    pub fn is_beside(&self) -> bool {
+        self.given.is_some()
+    }
+
+    /// A given force with this timing alone.
+    fn timed(&self, timing: Timing) -> Fitted {
+        let parameters = self.terms[0].parameters.iter();
+        let value = |shift: bool| if shift { timing.shift } else { timing.smoothing };
+        Fitted { terms: vec![0], values: parameters.map(|p| value(p.name == "shift")).collect() }
+    }
+
+    /// What is known of parameters from elsewhere.
+    pub fn known(&self) -> &Known {
+        &self.known
+    }
+
+    fn known_value(&self, effect: &dyn Effect, parameter: &str) -> Option<f64> {
+        if self.known.fixed.is_empty() {
+            return None;
+        }
+        self.known.fixed.get(&address(effect, parameter)).copied()
+    }
+
+    /// A model of the first term alone.
+    fn bare(&self, value: f64) -> Fitted {
+        Fitted { terms: vec![0], values: vec![value; self.terms[0].parameters.len()] }
+    }
+
+    /// Whether a model requires a force everywhere along the measured motion.
+    ///
+    /// # Errors
+    /// A law of it has no value somewhere.
+    pub fn check(&self, model: &Model) -> Result<(), PreparationError> {
+        let Ok(force) = self.fitted(model).and_then(|fitted| self.required(&fitted)) else {
+            return Ok(());
+        };
+        let name = || {
+            let user =
+                model.terms().iter().find(|t| t.effect().about().reference == formula::REFERENCE);
+            user.or(model.terms().first()).map_or("the model", |term| term.name()).to_owned()
+        };
+        self.finite(&force, name)
+    }
+
+    fn finite(&self, force: &[f64], effect: impl Fn() -> String) -> Result<(), PreparationError> {
+        let Some(k) = force.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let p = &self.prepared;
+        Err(PreparationError::Law {
+            effect: effect(),
+            value: force[k],
+            sample: k + 1,
+            time: p.time[k],
+            position: p.position[k],
+            velocity: p.velocity[k],
+        })
+    }
+
+    /// Laws of the user must have a value along the whole motion, where nothing of them is fitted yet.
+    fn check_laws(&self) -> Result<(), PreparationError> {
+        for effect in self.effects.iter().filter(|e| e.about().reference == formula::REFERENCE) {
+            if let Some(name) = effect.columns().iter().find(|_| !effect.is_bound()) {
+                let (effect, column) = (effect.about().name.to_owned(), name.clone());
+                return Err(PreparationError::Column { effect, column });
+            }
+            let Ok(plant) = Model::new(self.axis, 1.0).and_then(|m| m.with_effect(*effect)) else {
+                continue;
+            };
+            let force = self.driven(|motion| force_along(&plant, motion));
+            self.finite(&force, || effect.about().name.to_owned())?;
+        }
+        Ok(())
+    }
+
+    /// The value of the first term at which a term alone is looked at.
+    fn neutral(&self) -> f64 {
+        if self.given.is_some() { 0.0 } else { 1.0 }
+    }
+
+    /// Mass of a model; beside a given force what that one seems to have.
+    fn mass_of(&self, fitted: &Fitted) -> f64 {
+        match &self.given {
+            Some(given) => given.mass,
+            None => match self.known.fixed.get(MASS) {
+                Some(mass) => *mass,
+                None => fitted.values.first().copied().unwrap_or(1.0),
+            },
+        }
+    }
+
+    /// Noise of the measured position, m or rad.
+    fn position_deviation(&self) -> f64 {
+        let known = self.ahead.as_ref().map(|ahead| ahead.predictor.noise().position);
+        known.unwrap_or(self.prepared.position_noise)
     }
 
     /// Parameters that are not fitted: stroke and top speed are those of the recording, a spring is relaxed in
@@ -328,13 +489,19 @@ impl ModelFamily for FrictionFamily {
 
     fn predict(&self, fitted: &Fitted, out: &mut [f64]) {
         // A combination that is no plant predicts nothing; it then loses against every other.
-        let Ok(model) = self.model(fitted) else { return out.fill(0.0) };
-        let force = self.driven(|motion| force_along(&model, motion));
+        let Ok(force) = self.required(fitted) else { return out.fill(0.0) };
+        // Nor does a law that has no value somewhere.
+        if !force.iter().all(|value| value.is_finite()) {
+            return out.fill(0.0);
+        }
         out.copy_from_slice(&self.prepared.compare(&force));
     }
 
     fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
         let about = &self.terms[term];
+        if about.parameters.iter().all(|p| p.role == missing_physics::Role::Amplitude) {
+            return vec![Vec::new()];
+        }
         if let Some(law) = self.periodic(term) {
             return limits::periods(&self.prepared, self.stroke, (about, law));
         }
@@ -355,7 +522,7 @@ impl ModelFamily for FrictionFamily {
         let simple = model.terms.iter().skip(1).chain([&term]).all(|&term| self.is_simple(term));
         let about = &self.terms[term];
         let values = missing_physics::family::shapes::assemble(about, shape, &[]);
-        let alone = Fitted { terms: vec![0], values: vec![1.0] }.with(term, &values);
+        let alone = self.bare(self.neutral()).with(term, &values);
         // Without contact and drive in play a term's columns do not depend on the rest.
         match self.model(&alone) {
             Ok(plant) if simple => {
@@ -390,6 +557,9 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
+        if let Some(given) = &self.given {
+            return Some(Box::new(given::View { family: self, given }));
+        }
         let ahead = self.ahead.as_ref()?;
         Some(Box::new(ahead::View { family: self, ahead }))
     }
@@ -399,6 +569,9 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn reading(&self) -> Option<String> {
+        if self.given.is_some() {
+            return Some(given::READING.to_owned());
+        }
         self.hold.map(HoldChoice::words)
     }
 
@@ -421,6 +594,9 @@ impl ModelFamily for FrictionFamily {
             return false;
         };
         let name = effect.about().name;
+        if self.given.is_some() && given::UNSEEN.contains(&name) {
+            return false;
+        }
         if !effect.is_determined() || RIVALS.iter().any(|free| free.effect.about().name == name) {
             return false;
         }
@@ -444,17 +620,24 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn views(&self, fitted: &Fitted, split: &Split) -> Vec<NamedError> {
+        if self.given.is_some() {
+            // Nothing can be simulated with a force that is given over time.
+            return Vec::new();
+        }
         let model = self.model(fitted).ok();
         let view = |model| views::views(&model, &self.recording, &self.time, split);
         model.and_then(view).into_iter().collect()
     }
 
     fn view_noise(&self) -> BTreeMap<String, f64> {
+        if self.given.is_some() {
+            return BTreeMap::new();
+        }
         BTreeMap::from([views::noise(self.axis, self.prepared.position_noise)])
     }
 
     fn full_rate(&self, fitted: &Fitted) -> Option<FullRate> {
-        Some(full_rate::full_rate(self, &self.model(fitted).ok()?))
+        Some(full_rate::full_rate(self, &self.required(fitted).ok()?))
     }
 
     fn colour(&self) -> Vec<f64> {

@@ -17,7 +17,7 @@ pub fn plots(family: &FrictionFamily, base: &Fitted, last: &Fitted) -> Vec<Plot>
         .prepared
         .compare(&family.prepared.acceleration)
         .iter()
-        .map(|a| a * last.values.first().copied().unwrap_or(0.0))
+        .map(|a| a * family.mass_of(last))
         .collect();
     let velocity = family.prepared.sample(&family.prepared.velocity);
     let friction = |force: &[f64]| -> Vec<f64> {

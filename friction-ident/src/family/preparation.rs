@@ -10,6 +10,7 @@ use std::ops::Range;
 use missing_physics::{Hold, Recording, RecordingError};
 
 use super::filter::{Kernel, LowPass};
+use crate::known::KnownError;
 
 /// Cut-off of the position's smoother as a share of the sampling frequency.
 pub(super) const SMOOTHER: f64 = 0.1;
@@ -25,6 +26,9 @@ const MOST_POINTS: usize = 8000;
 const REST: f64 = 3.0;
 /// The same as a share of the root mean square speed: ringing of the smoother after a stop.
 const RINGING: f64 = 1e-3;
+/// Time at either end of a piece, s, in which filters of others settle; at most this share of the piece.
+const SETTLING: f64 = 0.3;
+const SETTLING_SHARE: f64 = 0.05;
 /// A grid point is used where at least this share of its neighbourhood moves.
 const MOVING: f64 = 0.3;
 
@@ -35,6 +39,37 @@ pub enum PreparationError {
     /// A channel is missing.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// A parameter that is said to be known and cannot be.
+    #[error(transparent)]
+    Known(#[from] KnownError),
+    /// A law of the user that reads a column which is not there.
+    #[error(
+        "effect '{effect}' reads '{column}', which is neither one of its parameters nor a column of the recording"
+    )]
+    Column {
+        /// The effect.
+        effect: String,
+        /// The column.
+        column: String,
+    },
+    /// A law of the user that has no value somewhere.
+    #[error(
+        "the law of effect '{effect}' is {value} at sample {sample} (t = {time:.6} s, x = {position:.6}, v = {velocity:.6})"
+    )]
+    Law {
+        /// The effect.
+        effect: String,
+        /// What it is there.
+        value: f64,
+        /// Sample, from 1.
+        sample: usize,
+        /// Time, s.
+        time: f64,
+        /// Position, m or rad.
+        position: f64,
+        /// Velocity, m/s or rad/s.
+        velocity: f64,
+    },
     /// Too little is left to compare.
     #[error(
         "only {points} of the recording's instants can be compared, {needed} are needed: it is too \
@@ -164,6 +199,37 @@ impl Prepared {
             return Err(PreparationError::TooLittle { points, needed });
         }
         Ok(prepared)
+    }
+
+    /// The same with what is near a rest or a reversal left out on both sides: there friction holds the axis for a
+    /// moment, which smoothed positions do not show, and a force that is made of velocities knows nothing of the force
+    /// that is held.
+    ///
+    /// # Errors
+    /// Too little is left.
+    pub fn without_rests(mut self) -> Result<Self, PreparationError> {
+        let reach = (1.0 / (self.cutoff * self.interval)).ceil() as usize;
+        let before = self.moving.clone();
+        for segment in &self.segments {
+            for k in segment.clone() {
+                let turns = k > segment.start && self.velocity[k - 1] * self.velocity[k] <= 0.0;
+                if turns || before[k] == 0.0 {
+                    let from = k.saturating_sub(reach).max(segment.start);
+                    self.moving[from..(k + reach + 1).min(segment.end)].fill(0.0);
+                }
+            }
+            // What others make of positions settles at either end.
+            let settling = (SETTLING / self.interval) as usize;
+            let skipped = settling.min((segment.len() as f64 * SETTLING_SHARE) as usize);
+            self.moving[segment.start..segment.start + skipped].fill(0.0);
+            self.moving[segment.end - skipped..segment.end].fill(0.0);
+        }
+        self.grid = self.choose_grid(self.bandwidth * self.interval);
+        if self.grid.len() < LEAST_POINTS {
+            let (points, needed) = (self.grid.len(), LEAST_POINTS);
+            return Err(PreparationError::TooLittle { points, needed });
+        }
+        Ok(self)
     }
 
     fn stride_for(&self, relative: f64) -> usize {

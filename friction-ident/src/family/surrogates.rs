@@ -6,6 +6,8 @@ use missing_physics::{Channel, DiscoverError, Recording, Settings, discover};
 
 use super::ahead::View;
 use super::{FrictionFamily, Options};
+use crate::effects::formula::COLUMN;
+use crate::effects::regressor::REGRESSOR;
 use crate::model::Model;
 
 impl FrictionFamily {
@@ -24,7 +26,10 @@ impl FrictionFamily {
         let (_, positions, hold) = readings.filter_map(read).min_by(|a, b| a.0.total_cmp(&b.0))?;
         let force = self.recording.channel("force")?.clone();
         let position = self.recording.channel("position")?.clone();
-        let channels = vec![force, Channel { values: positions, ..position }];
+        let mut channels = vec![force, Channel { values: positions, ..position }];
+        // What laws and regressors read.
+        let read = |name: &str| name.starts_with(COLUMN) || name.starts_with(REGRESSOR);
+        channels.extend(self.recording.channels().iter().filter(|c| read(&c.name)).cloned());
         let mut piece = vec![0; self.recording.len()];
         for (number, segment) in (0..).zip(self.recording.segments()) {
             piece[segment.clone()].fill(number);

@@ -45,7 +45,7 @@ impl FrictionFamily {
     /// Columns of encoders whose errors have these periods: the inertia of a motion that there is not. The
     /// friction that such a motion feigns is left to the refinement after the screening.
     pub(super) fn encoders(&self, model: &Fitted, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
-        let (p, mass) = (&self.prepared, model.values.first().copied().unwrap_or(0.0));
+        let (p, mass) = (&self.prepared, self.mass_of(model));
         self.sweep(periods, |period, wave| {
             let (mut a, mut b) = (Vec::with_capacity(wave.len()), Vec::with_capacity(wave.len()));
             for (wave, (v, acceleration)) in wave.iter().zip(p.velocity.iter().zip(&p.acceleration))

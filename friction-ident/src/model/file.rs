@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{Axis, Deserialize, Library, Model, ModelError, Serialize, address};
+use super::{Axis, Deserialize, Library, Model, ModelError, Serialize, Timing, address};
 use crate::effects::Effect;
+use crate::known::Known;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -13,9 +14,15 @@ struct File {
     schema: Option<String>,
     axis: Axis,
     /// kg, or kg m^2 on a rotary axis.
-    #[serde(alias = "inertia")]
-    mass: f64,
+    #[serde(alias = "inertia", default, skip_serializing_if = "Option::is_none")]
+    mass: Option<f64>,
+    /// In place of a mass: the model stands beside a force that another one gives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    model_force: Option<Timing>,
     effects: Vec<FileTerm>,
+    /// Parameters that are known from elsewhere.
+    #[serde(default, skip_serializing_if = "Known::is_empty")]
+    known: Known,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -38,7 +45,15 @@ impl Model {
     }
 
     fn from_file(file: &File, library: &Library) -> Result<Self, ModelError> {
-        let mut model = Self::new(file.axis, file.mass)?;
+        let mut model = match (file.mass, &file.model_force) {
+            (Some(mass), None) => Self::new(file.axis, mass)?,
+            (None, Some(given)) => Self::beside(file.axis, *given)?,
+            (None, None) => return Err(ModelError::Syntax("missing field `mass`".to_owned())),
+            (Some(_), Some(_)) => {
+                let both = "it has a mass and stands beside a model_force: keep one of them";
+                return Err(ModelError::Syntax(both.to_owned()));
+            }
+        };
         for term in &file.effects {
             let effect = library.find(&term.effect)?;
             check_complete(effect, term)?;
@@ -47,7 +62,7 @@ impl Model {
                 model.set(&address(effect, name), *value)?;
             }
         }
-        Ok(model)
+        Ok(model.with_known(file.known.clone()))
     }
 
     /// MODEL.json, indented.
@@ -64,7 +79,10 @@ impl Model {
             let parameters = names.zip(term.values.iter().copied()).collect();
             FileTerm { effect: term.name().to_owned(), parameters }
         });
-        File { schema: None, axis: self.axis, mass: self.mass, effects: effects.collect() }
+        let mass = self.timing.is_none().then_some(self.mass);
+        let model_force = self.timing;
+        let (known, effects) = (self.known.clone(), effects.collect());
+        File { schema: None, axis: self.axis, mass, model_force, effects, known }
     }
 }
 
@@ -123,7 +141,7 @@ mod tests {
         assert!(read(&missing).unwrap_err().to_string().contains("lacks its parameter 'v_s'"));
         let extra = term(r#"{"effect":"coulomb","parameters":{"F_C":1,"F_S":2}}"#);
         assert!(read(&extra).unwrap_err().to_string().contains("'coulomb.F_S'"));
-        let syntax = read(r#"{"axis":"linear"}"#).unwrap_err().to_string();
+        let syntax = read(r#"{"axis":"linear","effects":[]}"#).unwrap_err().to_string();
         assert!(syntax.contains("missing field `mass`"), "{syntax}");
         let mass = read(r#"{"axis":"linear","mass":-1,"effects":[]}"#).unwrap_err().to_string();
         assert!(mass.contains("'mass' is -1"), "{mass}");

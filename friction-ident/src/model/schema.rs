@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::axis::{Axis, Quantity};
+use crate::effects::beside::BESIDE;
 use crate::effects::{Effect, Library, Parameter, Scale};
 
 /// Where the schema lives in the repository, and what an exported model calls it.
@@ -14,6 +15,7 @@ pub fn schema(library: &Library) -> Value {
         .effects()
         .iter()
         .flat_map(|effect| std::iter::once(*effect).chain(effect.forms().iter().copied()))
+        .chain(BESIDE.iter().copied())
         .map(term)
         .collect();
     let units = |quantity| (Axis::Linear.unit(quantity), Axis::Rotary.unit(quantity));
@@ -37,10 +39,37 @@ pub fn schema(library: &Library) -> Value {
             },
             "mass": mass,
             "inertia": mass,
+            "model_force": {
+                "type": "object",
+                "description": "in place of a mass: the model stands beside a force that another model gives for every sample",
+                "properties": {
+                    "shift_s": { "type": "number", "description": "how much later the recorded force is, s" },
+                    "smoothing_s2": { "type": "number", "description": "variance of the smoothing that it went through, s^2" },
+                },
+                "required": ["shift_s"],
+                "additionalProperties": false,
+            },
+            "known": {
+                "type": "object",
+                "description": "parameters that are known from elsewhere, by address (mass, viscous.F_v), SI",
+                "properties": {
+                    "fixed": { "type": "object", "additionalProperties": { "type": "number" } },
+                    "bounds": {
+                        "type": "object",
+                        "additionalProperties": {
+                            "type": "array",
+                            "items": { "type": "number" },
+                            "minItems": 2,
+                            "maxItems": 2,
+                        },
+                    },
+                },
+                "additionalProperties": false,
+            },
             "effects": { "type": "array", "items": { "oneOf": effects } },
         },
         "required": ["axis", "effects"],
-        "oneOf": [{ "required": ["mass"] }, { "required": ["inertia"] }],
+        "oneOf": [{ "required": ["mass"] }, { "required": ["inertia"] }, { "required": ["model_force"] }],
         "additionalProperties": false,
     })
 }

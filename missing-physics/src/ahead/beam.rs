@@ -484,7 +484,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 let key = || term.key(parameter);
                 let gone = |before: f64| node.model.values[k].abs() < GONE * before.abs();
                 match base.model.values.get(k) {
-                    Some(before) if term.always && gone(*before) => {
+                    Some(before) if term.always && parameter.lower >= 0.0 && gone(*before) => {
                         let last = *node.model.terms.last()?;
                         return Some((last, format!("nothing of {} is left", key())));
                     }

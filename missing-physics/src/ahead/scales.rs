@@ -36,8 +36,9 @@ pub fn of<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<Moved> {
 impl Moved {
     fn new(parameter: &Parameter, value: f64, always: bool) -> Self {
         let typical = SHARE * parameter.start.abs();
-        // What every model has is known: its own size is its scale.
-        let scale = if always { value.abs() } else { value.abs().max(typical) };
+        // What every model has is known (an inertia): its own size is its scale.
+        let known = always && parameter.lower > 0.0;
+        let scale = if known { value.abs() } else { value.abs().max(typical) };
         Self { parameter: parameter.clone(), value, scale: scale.max(f64::MIN_POSITIVE) }
     }
 

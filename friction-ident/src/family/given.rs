@@ -1,0 +1,250 @@
+//! Models beside a force that another model gives for every sample of the recording.
+//!
+//! There is no mass here and nothing to simulate: the given force already holds the inertia. What is predicted is the
+//! recorded force at an instant, from the motion that was measured (a known input), from the given force, and from
+//! what the model missed at the instants before:
+//!
+//! ```text
+//! r_k = L [u - D^-1(F_given + sum of effects along the measured motion)]_k     D: what the drive does (delay, lag)
+//! e_k = r_k - a_1 r_k-1 - ... - a_p r_k-p                                      one step ahead
+//! ```
+//!
+//! `L` is the low-pass of the comparison; it and the mask at rest act on both sides alike, so that a given force that
+//! lacks nothing leaves nothing, whatever a smoother does at reversals. The coefficients `a` are fitted to each model's
+//! own residual (Yule-Walker), for orders `p` from 0 to 6, which take the place of the process noise: the filter is
+//! monic, so that errors of all orders are errors of the same force (L. Ljung, System Identification, 1999, ch. 3.2).
+
+mod errors;
+mod whitening;
+
+use missing_physics::statistics::basis::{gram, solve};
+use missing_physics::{Fitted, Term};
+
+pub(super) use errors::View;
+use whitening::Whitening;
+
+use super::FrictionFamily;
+use crate::driven::force_along;
+use crate::effects::beside::{MODEL_FORCE, ModelForce};
+use crate::effects::{Effect, Signal, Slot};
+use crate::model::{Model, ModelError, Timing};
+
+/// Bandwidth of the comparison, Hz: velocities and accelerations that others make of positions are hardly known beyond;
+/// and within which shares of the sampling frequency it is kept.
+const BANDWIDTH: f64 = 15.0;
+const SHARES: (f64, f64) = (0.01, 0.05);
+/// Most samples by which the given force may be ahead of the recorded one or behind it: half a sample where a command
+/// is held, a sample where it was written before it acted.
+pub(super) const MOST_SHIFT: f64 = 1.5;
+/// Most variance of a smoothing, in squared samples.
+pub(super) const MOST_SMOOTHING: f64 = 900.0;
+/// Shares below which an effect is what filters and differentiation leave: of the inertia or the whole given force, and
+/// of the recorded force.
+const LEAST_OF_GIVEN: f64 = 0.02;
+const LEAST_OF_FORCE: f64 = 0.005;
+/// What noise that moves the axis can make of effects that act with its acceleration, or on all of the force, in units of
+/// the noise. The recorded acceleration holds that noise, so that a least-squares fit takes part of it for less inertia:
+/// at most as much as there is.
+const LEAST_OF_NOISE: f64 = 1.0;
+/// Effects that cannot be told beside a given force: what the sensor shows is in that force already, and a lag of second
+/// order is a delay with what other people's filters make.
+pub(super) const UNSEEN: [&str; 2] = ["encoder", "actuator-lag:second-order"];
+/// Effects of which another model may have too much.
+const DEVIATIONS: [&str; 4] = ["coulomb", "viscous", "quadratic-drag", "spring"];
+/// What is said of how the recording was read.
+pub(super) const READING: &str = "The force that your model gives is taken over time, nothing of ours beside it. What its \
+    samples and filters make is fitted and no effect: a shift of up to 1.5 samples (timing.shift) and a smoothing \
+    (timing.smoothing). Rests and reversals are left out, where a force made of velocities says nothing.";
+/// Trial shifts by which the noise is judged.
+const SHIFTS: i32 = 6;
+
+/// What is known of the given force.
+#[derive(Clone)]
+pub(super) struct Given {
+    /// The force as a term of a model.
+    effect: &'static dyn Effect,
+    /// Inertia, Coulomb and viscous friction that it seems to have.
+    pub mass: f64,
+    pub level: f64,
+    pub damping: f64,
+    instants: Vec<(f64, usize)>,
+    whitening: Whitening,
+}
+
+impl Given {
+    /// The channel `model_force` of the family's recording, if it has one.
+    pub fn of(family: &FrictionFamily) -> Option<Self> {
+        let effect = ModelForce.bound(&family.recording)?;
+        let signal = Signal::of(&family.recording, MODEL_FORCE)?;
+        let p = &family.prepared;
+        let mut near = 0;
+        let force: Vec<f64> = p.time.iter().map(|t| signal.at(*t, &mut near)).collect();
+        #[expect(
+            clippy::redundant_closure_for_method_calls,
+            reason = "the method is for one lifetime only"
+        )]
+        let sliding = family.driven(|motion| motion.sliding());
+        let columns = [&p.acceleration, &sliding, &p.velocity, &vec![1.0; p.time.len()]]
+            .map(|column| p.compare(column));
+        let given = p.compare(&force);
+        let moment: Vec<f64> =
+            columns.iter().map(|c| missing_physics::statistics::basis::dot(c, &given)).collect();
+        let simple = solve(&gram(&columns), &moment, &[0, 1, 2, 3]);
+        Some(Self {
+            effect,
+            mass: simple[0].max(f64::MIN_POSITIVE),
+            level: simple[1].max(0.0),
+            damping: simple[2].max(0.0),
+            instants: instants(family),
+            whitening: Whitening::default(),
+        })
+    }
+
+    /// The force that this one and `model` require together along the measured motion, sample by sample.
+    pub fn required(&self, family: &FrictionFamily, model: &Model) -> Result<Vec<f64>, ModelError> {
+        let Timing { shift, smoothing } = model.timing().unwrap_or_default();
+        let mut plant = model.clone().with_effect(self.effect)?;
+        plant.set("model-force.smoothing", smoothing)?;
+        let mut force = family.driven(|motion| force_along(&plant, motion));
+        if shift != 0.0 {
+            let p = &family.prepared;
+            for segment in &p.segments {
+                advance(&mut force[segment.clone()], shift / p.interval);
+            }
+        }
+        Ok(force)
+    }
+
+    /// What is no effect as it was fitted: smaller than what filters and differentiation make of a force that lacks
+    /// nothing, or no longer than the timing of samples.
+    pub fn vanishes(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+        self.too_small(family, model).or_else(|| Self::too_short(family, model))
+    }
+
+    fn too_small(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+        let rms = |values: &[f64]| {
+            let square: f64 = values.iter().map(|value| value * value).sum();
+            (square / values.len().max(1) as f64).sqrt()
+        };
+        let all = missing_physics::fit::predict(family, model);
+        let size = rms(missing_physics::ModelFamily::target(family));
+        model.terms.iter().enumerate().skip(1).find_map(|(place, term)| {
+            let name = family.terms[*term].name.as_str();
+            let first = model.values.get(model.range(family, place).start).copied()?;
+            let of_given = match name {
+                "inertia" => first.abs() / self.mass,
+                "model-gain" => first.abs(),
+                _ => f64::INFINITY,
+            };
+            if of_given < LEAST_OF_GIVEN {
+                let text = format!(
+                    "{name} is {:.1} % of what the given force has: filters make as much of it",
+                    100.0 * of_given
+                );
+                return Some((*term, text));
+            }
+            let without = missing_physics::fit::predict(family, &model.without(family, *term));
+            let change: Vec<f64> = all.iter().zip(&without).map(|(a, b)| a - b).collect();
+            let change = rms(&change);
+            let share = change / size;
+            let slots = family.effects[term.checked_sub(1)?].about().slots;
+            let moves = of_given.is_finite()
+                || slots.contains(&Slot::Drive)
+                || slots.contains(&Slot::Attached);
+            if moves && change < LEAST_OF_NOISE * self.whitening.budget {
+                let text = format!("{name} makes no more than noise that moves the axis can");
+                return Some((*term, text));
+            }
+            (share < LEAST_OF_FORCE).then(|| {
+                (
+                    *term,
+                    format!(
+                        "{name} makes {:.2} % of the force: filters make as much",
+                        100.0 * share
+                    ),
+                )
+            })
+        })
+    }
+
+    fn too_short(family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+        let most = MOST_SHIFT * family.prepared.interval;
+        model.terms.iter().enumerate().find_map(|(place, term)| {
+            let about = family.effects[term.checked_sub(1)?].about();
+            if !about.acts_on(Slot::Drive) {
+                return None;
+            }
+            let values = &model.values[model.range(family, place)];
+            let parameters = family.terms[*term].parameters.iter().zip(values);
+            let times: Vec<f64> =
+                parameters.filter(|(p, _)| p.unit == "s").map(|(_, value)| *value).collect();
+            let short = !times.is_empty() && times.iter().sum::<f64>() <= most;
+            short.then(|| {
+                let text = format!("{} is within {MOST_SHIFT} samples: their timing", about.name);
+                (*term, text)
+            })
+        })
+    }
+}
+
+impl FrictionFamily {
+    /// Learns how the prediction errors beside the given force are to be whitened, and what noise makes of them.
+    pub(super) fn weigh_given(&mut self) {
+        let interval = self.prepared.interval;
+        let trials = (-SHIFTS..=SHIFTS).map(|k| {
+            let shift = MOST_SHIFT * interval * f64::from(k) / f64::from(SHIFTS);
+            let model = self.timed(Timing { shift, smoothing: 0.0 });
+            missing_physics::fit::residual(self, &missing_physics::fit::predict(self, &model))
+        });
+        let size =
+            |residual: &Vec<f64>| missing_physics::statistics::basis::dot(residual, residual);
+        let least = trials.min_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or_default();
+        let whitening = Whitening::of(self, &least);
+        if let Some(given) = &mut self.given {
+            given.whitening = whitening;
+        }
+    }
+}
+
+/// Instants of the grid, and the piece that each belongs to.
+fn instants(family: &FrictionFamily) -> Vec<(f64, usize)> {
+    let p = &family.prepared;
+    let piece = |k: usize| p.segments.partition_point(|segment| segment.end <= k);
+    p.grid.iter().map(|k| (p.time[*k], piece(*k))).collect()
+}
+
+/// Bandwidth of the comparison with samples every `interval` s, Hz.
+pub(super) fn bandwidth(interval: f64) -> f64 {
+    BANDWIDTH.clamp(SHARES.0 / interval, SHARES.1 / interval)
+}
+
+/// Lets the amplitudes of effects that the given force has already be negative.
+pub(super) fn as_deviations(terms: &mut [Term]) {
+    for term in terms.iter_mut().filter(|term| DEVIATIONS.contains(&term.name.as_str())) {
+        for parameter in &mut term.parameters {
+            if parameter.role == missing_physics::Role::Amplitude {
+                parameter.lower = -parameter.upper;
+            }
+        }
+    }
+}
+
+/// Evenly sampled values `by` samples later: cubic between samples, the last value beyond the end.
+fn advance(values: &mut [f64], by: f64) {
+    let given = values.to_vec();
+    let last = given.len() as i64 - 1;
+    let (whole, part) = (by.floor() as i64, by - by.floor());
+    let weights = [
+        -part * (part - 1.0) * (part - 2.0) / 6.0,
+        (part + 1.0) * (part - 1.0) * (part - 2.0) / 2.0,
+        -(part + 1.0) * part * (part - 2.0) / 2.0,
+        (part + 1.0) * part * (part - 1.0) / 6.0,
+    ];
+    for (k, value) in values.iter_mut().enumerate() {
+        let at = |offset: i64| given[(k as i64 + whole + offset).clamp(0, last) as usize];
+        *value = (0..4).map(|i| weights[i as usize] * at(i - 1)).sum();
+    }
+}
+
+#[cfg(test)]
+mod tests;
