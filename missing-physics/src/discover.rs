@@ -17,9 +17,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
 ) -> Result<Discovery, DiscoverError> {
     let base = terms(family, &settings.base)?;
     let excluded = terms(family, &settings.exclude)?;
-    if let Some(one_ahead) = family.ahead() {
+    if let Some(reading) = ahead::Reading::of(family) {
         let sets = (base.as_slice(), excluded.as_slice());
-        return Ok(ahead::discover(family, &*one_ahead, settings, sets, observer));
+        return Ok(ahead::discover(&reading, settings, sets, observer));
     }
     Ok(Search::new(family, settings, &base, excluded, observer).run())
 }

@@ -89,6 +89,15 @@ impl OneAhead {
 pub(super) struct View<'a> {
     pub family: &'a FrictionFamily,
     pub ahead: &'a OneAhead,
+    /// Whether errors are judged by what an autoregression leaves of them.
+    pub coloured: bool,
+}
+
+impl<'a> View<'a> {
+    /// The errors as they are.
+    pub fn new(family: &'a FrictionFamily, ahead: &'a OneAhead) -> Self {
+        Self { family, ahead, coloured: false }
+    }
 }
 
 impl FrictionFamily {
@@ -138,6 +147,14 @@ impl Ahead for View<'_> {
 
     fn budget(&self) -> f64 {
         self.ahead.predictor.budget()
+    }
+
+    fn coloured(&self) -> Option<Box<dyn Ahead + '_>> {
+        Some(Box::new(Self { coloured: true, ..*self }))
+    }
+
+    fn is_coloured(&self) -> bool {
+        self.coloured
     }
 
     fn share(&self) -> f64 {
@@ -208,7 +225,7 @@ impl Ahead for View<'_> {
 
     fn part(&self) -> Option<Box<dyn Ahead + '_>> {
         let ahead = self.ahead.part.as_deref()?;
-        Some(Box::new(View { family: self.family, ahead }))
+        Some(Box::new(Self { ahead, ..*self }))
     }
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {

@@ -75,7 +75,7 @@ impl HoldChoice {
 fn likelihood(family: &FrictionFamily) -> Option<f64> {
     let ahead = family.thinned.as_ref().or(family.ahead.as_ref())?;
     let moving = ahead.predictor.counted_and_moving();
-    let view = View { family, ahead };
+    let view = View::new(family, ahead);
     let known = |name: &&&str| family.terms().iter().any(|term| term.name == ***name);
     let names: Vec<String> = SIMPLE.iter().filter(known).map(|name| (*name).to_owned()).collect();
     let terms = terms(family, &names).ok()?;

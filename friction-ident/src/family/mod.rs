@@ -561,7 +561,7 @@ impl ModelFamily for FrictionFamily {
             return Some(Box::new(given::View { family: self, given }));
         }
         let ahead = self.ahead.as_ref()?;
-        Some(Box::new(ahead::View { family: self, ahead }))
+        Some(Box::new(ahead::View::new(self, ahead)))
     }
 
     fn other_reading(&self) -> Option<(&Self, f64)> {
@@ -577,7 +577,7 @@ impl ModelFamily for FrictionFamily {
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
         let ahead = self.thinned.as_ref()?;
-        Some(Box::new(ahead::View { family: self, ahead }))
+        Some(Box::new(ahead::View::new(self, ahead)))
     }
 
     fn form_of(&self, term: usize) -> Option<usize> {

@@ -15,7 +15,7 @@ impl FrictionFamily {
     /// cannot predict this one.
     pub fn surrogate(&self, model: &Model, seed: u64) -> Option<Recording> {
         let read = |family: &Self| {
-            let ahead = View { family, ahead: family.ahead.as_ref()? };
+            let ahead = View::new(family, family.ahead.as_ref()?);
             let fitted = family.fitted(model).ok()?;
             let setting = fit::best_setting(&ahead, &fitted);
             let node = fit::evaluated(&ahead, fitted, setting);

@@ -161,14 +161,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// Goes on to the best set of effects.
     pub fn finish(mut self, mut climb: Climb) -> Found {
-        while !climb.ended && climb.nodes.len() <= self.thresholds.most {
-            self.grow(&mut climb);
-        }
-        let mut best = self.size(&climb);
+        let mut best = self.grown(&mut climb);
         let mut rival = None;
         loop {
             let (needed, costs) = self.prune(&climb, best);
-            let last = self.plainest(needed);
+            let last = self.plainest(needed, &costs);
             if let Some((term, reason)) = self.refused(&climb.base, &last) {
                 // Its last fit took it there.
                 let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
@@ -196,6 +193,29 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             let (size, cost) = (costs.len() - 1, negative(*cost));
             self.note(size, without, &last, cost, Outcome::Dropped, "chance gains as much");
             best = without.clone();
+        }
+    }
+
+    /// The best set of effects. Where pruning comes to a smaller set that no size had, the search goes on from there
+    /// (floating search: P. Pudil, J. Novovicova and J. Kittler, 1994).
+    fn grown(&mut self, climb: &mut Climb) -> Node {
+        loop {
+            while !climb.ended && climb.nodes.len() <= self.thresholds.most {
+                self.grow(climb);
+            }
+            let best = self.size(climb);
+            let (needed, costs) = self.prune(climb, best);
+            let size = costs.len();
+            let known = |set: &Node| self.key(set) == self.key(&needed);
+            let sets = climb.nodes.get(size).map_or(&[][..], Vec::as_slice);
+            if sets.iter().any(known) || self.budget(&needed) < INSIDE || (self.stop)() {
+                return needed;
+            }
+            climb.nodes.truncate(size + 1);
+            climb.ranking.truncate(size);
+            climb.nodes[size].insert(0, needed.clone());
+            climb.beam = vec![needed];
+            climb.ended = false;
         }
     }
 
@@ -346,21 +366,21 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.untried
             .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
         let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
-        fitted.sort_by(|a, b| a.scale.total_cmp(&b.scale));
+        fitted.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
         let keep = if size == 1 { self.thresholds.fitted } else { self.thresholds.beam };
         fitted.truncate(keep);
         let mut settled: Vec<Node> =
             fitted.into_par_iter().map(|node| self.fitter().settled(node, STEPS.1)).collect();
-        let best = settled.iter().map(|node| node.scale).fold(f64::INFINITY, f64::min);
+        let best = settled.iter().map(|node| node.deviation).fold(f64::INFINITY, f64::min);
         settled = settled
             .into_par_iter()
-            .map(|node| if node.scale <= NEAR * best { self.rescanned(&node) } else { node })
+            .map(|node| if node.deviation <= NEAR * best { self.rescanned(&node) } else { node })
             .collect();
         let known =
             |model: &Fitted| model.terms.last().is_some_and(|term| self.candidates.contains(term));
         let related: Vec<(Fitted, usize)> = settled
             .iter()
-            .filter(|node| node.scale <= NEAR * best)
+            .filter(|node| node.deviation <= NEAR * best)
             .flat_map(|node| {
                 let related = self.ahead.relatives(&node.model).into_iter();
                 related.filter(known).map(|model| (model, node.setting)).collect::<Vec<_>>()
@@ -371,7 +391,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             .map(|(start, setting)| self.refit(&start, setting, STEPS.2))
             .collect();
         settled.extend(related);
-        settled.sort_by(|a, b| a.scale.total_cmp(&b.scale));
+        settled.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
         let beam = self.thresholds.beam;
         let shaped = settled.into_par_iter().enumerate();
         let shaped = shaped
@@ -435,7 +455,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     fn sorted(&self, mut nodes: Vec<Node>) -> Vec<Node> {
         // Held out, in the units of the best: the comparison with one and the same node orders all.
-        nodes.sort_by(|a, b| a.scale.total_cmp(&b.scale));
+        nodes.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
         let Some(first) = nodes.first().cloned() else { return nodes };
         let mut keyed: Vec<(f64, Node)> = nodes
             .into_iter()

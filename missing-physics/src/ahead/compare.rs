@@ -80,7 +80,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
 
     /// The same of two models that were not fitted to this recording: nothing is held out.
     pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
-        self.of_errors(a, b, |node| &node.errors)
+        self.of_errors(a, b, |node| &node.innovations)
     }
 
     /// From the errors that count for each.
@@ -90,7 +90,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         b: &'n Node,
         errors: impl Fn(&'n Node) -> &'n [f64],
     ) -> Difference {
-        let scale = a.scale.min(b.scale);
+        let scale = a.deviation.min(b.deviation);
         let loss = |node: &'n Node| -> Vec<f64> {
             errors(node).iter().map(|e| statistics::loss(e / scale)).collect()
         };
@@ -111,12 +111,14 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
     /// Each error as predicted by a model that was refitted without its fold: one Gauss-Newton step, as far as it
     /// lowers the loss of the other folds.
     fn held_out(&self, node: &Node) -> Vec<f64> {
-        let jacobian = node.jacobian(self.family, self.ahead);
+        let white = |errors: &[f64]| node.law.left(errors, self.ahead.instants());
+        let jacobian: Vec<Vec<f64>> =
+            node.jacobian(self.family, self.ahead).iter().map(|column| white(column)).collect();
         let moved = scales::of(self.family, &node.model);
         let shrunk = Shrunk::of(self.family, &node.model);
         let all: Vec<usize> = (0..moved.len()).collect();
         let parts: Vec<Normal> =
-            (0..FOLDS).map(|fold| self.part(node, jacobian, node.scale, fold)).collect();
+            (0..FOLDS).map(|fold| self.part(node, &jacobian, node.deviation, fold)).collect();
         let mut trials: Vec<(Fitted, usize)> = Vec::new();
         for held in 0..FOLDS {
             let mut matrix = vec![vec![0.0; moved.len()]; moved.len()];
@@ -139,17 +141,18 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
                 trials.push((model, node.setting));
             }
         }
-        let refitted = self.ahead.errors(&trials);
-        let mut errors = node.errors.clone();
+        let refitted: Vec<Vec<f64>> =
+            self.ahead.errors(&trials).iter().map(|errors| white(errors)).collect();
+        let mut errors = node.innovations.clone();
         let tried = trials.chunks(SHARES.len()).zip(refitted.chunks(SHARES.len()));
         for (held, (models, steps)) in tried.enumerate() {
             // The model as it is stands where no step leads down.
             let seen = |model: &Fitted, errors: &[f64]| -> f64 {
                 let others = errors.iter().zip(&self.fold).filter(|(_, fold)| **fold != held);
-                let loss: f64 = others.map(|(e, _)| statistics::loss(e / node.scale)).sum();
+                let loss: f64 = others.map(|(e, _)| statistics::loss(e / node.deviation)).sum();
                 loss + shrunk.loss(&model.values)
             };
-            let mut best = (seen(&node.model, &node.errors), &node.errors);
+            let mut best = (seen(&node.model, &node.innovations), &node.innovations);
             for ((model, _), step) in models.iter().zip(steps) {
                 let loss = seen(model, step);
                 if loss < best.0 {
@@ -169,7 +172,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
             column.iter().zip(&self.fold).filter(|(_, f)| **f == fold).map(|(v, _)| *v).collect()
         };
         let columns: Vec<Vec<f64>> = jacobian.iter().map(|column| pick(column)).collect();
-        Normal::of(&columns, &pick(&node.errors), scale)
+        Normal::of(&columns, &pick(&node.innovations), scale)
     }
 }
 

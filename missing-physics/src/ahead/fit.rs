@@ -92,7 +92,7 @@ impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
 /// A model as it is.
 pub fn evaluated(ahead: &dyn Ahead, model: Fitted, setting: usize) -> Node {
     let errors = ahead.errors(&[(model.clone(), setting)]).swap_remove(0);
-    Node::new(model, setting, errors)
+    Node::new(ahead, model, setting, errors)
 }
 
 /// The next node and whether the fit has converged; nothing where no damping leads down.
@@ -130,7 +130,7 @@ fn step<F: ModelFamily + ?Sized>(
     }
     *damping = tried[best];
     let (model, errors) = (trials[best].0.clone(), errors[best].clone());
-    Some((Node::new(model, node.setting, errors), fall < (CONVERGED * before).max(1.0)))
+    Some((Node::new(ahead, model, node.setting, errors), fall < (CONVERGED * before).max(1.0)))
 }
 
 /// Normal equations of the weighed errors in units of their scale.

@@ -8,12 +8,16 @@ use super::fit::{self, Fitter};
 use super::node::Node;
 use super::screen::Promise;
 use super::{Ahead, local};
+use crate::family::Series;
 use crate::family::{Fitted, ModelFamily};
+use crate::measurement::quantity::quantity;
 use crate::report::Decision;
 use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
 const IN_FULL: usize = 8;
+/// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
+const MOST: f64 = 0.5;
 
 /// What a search found.
 #[derive(Clone, Debug)]
@@ -131,8 +135,8 @@ impl Found {
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
-    /// Takes all names back where what is left is in a few wild samples, or where samples are known to be faulty: that is
-    /// no business of any effect.
+    /// Takes all names back where they are not the cause: what is left is in a few wild samples, samples are known to be
+    /// faulty, or the greater part of the force that the base model lacks is still lacking beyond doubt.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
@@ -140,13 +144,22 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
-        if local::faults(&top.errors).is_none() && ahead.faults().is_none() {
+        let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
+        let still = lacks(top).zip(lacks(&self.base)).is_some_and(|((rms, band), (before, _))| {
+            rms > thresholds.local * band && rms * rms > MOST * before * before
+        });
+        if !still && local::faults(&top.errors).is_none() && ahead.faults().is_none() {
             return;
         }
+        let force = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
+        let force = force.map_or_else(String::new, |((before, _), (left, _))| {
+            let told = |force| quantity(force, &family.quantity().unit);
+            format!(", the force that is lacking from {} to {}", told(before), told(left))
+        });
         let names: Vec<&str> =
             self.added.iter().map(|term| family.terms()[*term].name.as_str()).collect();
         self.notes.push(format!(
-            "nearest: {} would lower the prediction error only from {:.2} to {:.2} times what the sensors make: \
+            "nearest: {} would take the prediction error from {:.2} to {:.2} times what the sensors make{force}: \
              that is not the cause",
             names.join(" + "),
             self.base.scale / ahead.budget(),

@@ -9,6 +9,7 @@ pub mod chance;
 pub mod compare;
 pub mod fit;
 mod found;
+mod law;
 mod local;
 pub mod node;
 mod reading;
@@ -19,7 +20,7 @@ pub mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use report::discover;
+pub use report::{Reading, discover};
 
 pub use crate::family::{Ahead, Columns, Rival, Trial, trials};
 pub use crate::task::Thresholds;

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::law::Law;
 use super::{Ahead, scales, statistics};
 use crate::family::{Fitted, ModelFamily, Series};
 
@@ -19,6 +20,12 @@ pub struct Node {
     pub errors: Vec<f64>,
     /// Robust rms of the errors.
     pub scale: f64,
+    /// What colours them.
+    pub law: Law,
+    /// What it leaves of them.
+    pub innovations: Vec<f64>,
+    /// Robust rms of that.
+    pub deviation: f64,
     jacobian: OnceLock<Vec<Vec<f64>>>,
     held_out: OnceLock<Vec<f64>>,
     correlation: OnceLock<f64>,
@@ -27,13 +34,20 @@ pub struct Node {
 
 impl Node {
     /// A model with its errors.
-    pub fn new(model: Fitted, setting: usize, errors: Vec<f64>) -> Self {
-        let scale = statistics::rms(&errors, CUT).max(f64::MIN_POSITIVE);
+    pub fn new(ahead: &dyn Ahead, model: Fitted, setting: usize, errors: Vec<f64>) -> Self {
+        let size = |errors: &[f64]| statistics::rms(errors, CUT).max(f64::MIN_POSITIVE);
+        let law =
+            if ahead.is_coloured() { Law::of(&errors, ahead.instants()) } else { Law::none() };
+        let innovations = law.left(&errors, ahead.instants());
+        let (scale, deviation) = (size(&errors), size(&innovations));
         Self {
             model,
             setting,
             errors,
             scale,
+            law,
+            innovations,
+            deviation,
             jacobian: OnceLock::new(),
             held_out: OnceLock::new(),
             correlation: OnceLock::new(),
@@ -70,7 +84,7 @@ impl Node {
 
     /// How many errors say as much as an independent one.
     pub fn correlation(&self) -> f64 {
-        *self.correlation.get_or_init(|| statistics::correlation(&self.errors))
+        *self.correlation.get_or_init(|| statistics::correlation(&self.innovations))
     }
 
     /// The force that the model lacks, where the family can tell.

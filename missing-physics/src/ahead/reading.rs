@@ -44,5 +44,5 @@ pub fn needs_less<F: ModelFamily + ?Sized>(
 
 /// Gain in log-likelihood from one model to another, each with errors of its own size.
 fn gain(from: &Node, to: &Node) -> f64 {
-    to.errors.len() as f64 / to.correlation() * (from.scale / to.scale).ln()
+    to.errors.len() as f64 / to.correlation() * (from.deviation / to.deviation).ln()
 }

@@ -28,8 +28,7 @@ use crate::task::{Event, Observer, Settings, Thresholds};
 
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 pub fn discover<F: ModelFamily + ?Sized>(
-    family: &F,
-    ahead: &dyn Ahead,
+    here: &Reading<'_, F>,
     settings: &Settings<'_>,
     sets: (&[usize], &[usize]),
     observer: &mut (dyn Observer + Send),
@@ -43,29 +42,57 @@ pub fn discover<F: ModelFamily + ?Sized>(
         }
     };
     let run = Run { settings, sets, started, stop: &stop, tell: &tell };
-    let part = family.ahead_in_part();
-    let (search, climb) = run.begun(family, part.as_deref().unwrap_or(ahead));
-    let other = family.other_reading().filter(|_| !stop());
-    let other = other.and_then(|(other, nats)| Some((other, nats, other.ahead()?)));
-    let Some((other, nats, other_ahead)) = other else {
-        return run.told(family, ahead, search.finish(climb));
-    };
-    let other_part = other.ahead_in_part();
-    let searched = other_part.as_deref().unwrap_or(&*other_ahead);
-    let (second, second_climb) = run.begun(other, searched);
-    let better = settings.thresholds.in_part(searched.share()).better;
-    if reading::nats(second_climb.top(), climb.top(), better) > nats {
-        return run.told(other, &*other_ahead, second.finish(second_climb));
+    let there = here.family.other_reading().filter(|_| !stop());
+    let there = there.and_then(|(other, nats)| Some((Reading::of(other)?, nats)));
+    let first = run.sought(here, there.as_ref());
+    // A wrong reading takes an effect of its own to leave nothing.
+    let doubtful = there.is_some() && first.found.added.len() > 1;
+    if (first.found.complete && !doubtful) || stop() {
+        return run.told(first);
     }
-    let found = search.finish(climb);
-    let fitter = Fitter::new(other, searched);
-    if !stop() && reading::needs_less(&found, other, &fitter.stopped_by(&stop), better) {
-        let second = second.finish(second_climb);
-        if reading::nats(second.top(), found.top(), better) > 0.0 {
-            return run.told(other, &*other_ahead, second);
-        }
+    // What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
+    // effects are missing none of them is seen beside the others. What is then found counts where it leaves nothing.
+    let Some(here) = here.coloured() else { return run.told(first) };
+    let there = there.as_ref().and_then(|(there, nats)| Some((there.coloured()?, *nats)));
+    let mut second = run.sought(&here, there.as_ref());
+    let plainer = second.found.added.len() < first.found.added.len();
+    if !second.found.complete || (first.found.complete && !plainer) {
+        return run.told(first);
     }
-    run.told(family, ahead, found)
+    second.found.decisions.splice(0..0, first.found.decisions);
+    run.told(second)
+}
+
+/// A recording as it is read: how its input acts between samples.
+pub struct Reading<'a, F: ModelFamily + ?Sized> {
+    family: &'a F,
+    whole: Box<dyn Ahead + 'a>,
+    part: Option<Box<dyn Ahead + 'a>>,
+}
+
+impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
+    /// That of a family that predicts one sample ahead.
+    pub fn of(family: &'a F) -> Option<Self> {
+        Some(Self { family, whole: family.ahead()?, part: family.ahead_in_part() })
+    }
+
+    /// What is searched.
+    fn searched(&self) -> &dyn Ahead {
+        self.part.as_deref().unwrap_or(&*self.whole)
+    }
+
+    /// The same, its errors judged by what an autoregression leaves of them.
+    fn coloured(&self) -> Option<Reading<'_, F>> {
+        let part = self.part.as_ref().map(|part| part.coloured());
+        let whole = self.whole.coloured()?;
+        Some(Reading { family: self.family, whole, part: part.flatten() })
+    }
+}
+
+/// What was found in a reading.
+struct Sought<'a, F: ModelFamily + ?Sized> {
+    reading: &'a Reading<'a, F>,
+    found: Found,
 }
 
 /// One discovery, whatever the reading.
@@ -79,12 +106,50 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// What is found in the reading that stands: on all of the recording, judged.
+    fn sought<'b, F: ModelFamily + ?Sized>(
+        &'b self,
+        here: &'b Reading<'b, F>,
+        there: Option<&'b (Reading<'b, F>, f64)>,
+    ) -> Sought<'b, F> {
+        let (reading, mut found) = self.found(here, there);
+        if reading.part.is_some() {
+            found.confirm(reading.family, &*reading.whole, &self.thresholds());
+        }
+        found.judge(reading.family, &*reading.whole, &self.thresholds());
+        Sought { reading, found }
+    }
+
+    /// What is found in the reading that stands, as far as it was searched.
+    fn found<'b, F: ModelFamily + ?Sized>(
+        &'b self,
+        here: &'b Reading<'b, F>,
+        there: Option<&'b (Reading<'b, F>, f64)>,
+    ) -> (&'b Reading<'b, F>, Found) {
+        let (search, climb) = self.begun(here);
+        let Some((there, nats)) = there else { return (here, search.finish(climb)) };
+        let (second, second_climb) = self.begun(there);
+        let better = self.settings.thresholds.in_part(there.searched().share()).better;
+        if reading::nats(second_climb.top(), climb.top(), better) > *nats {
+            return (there, second.finish(second_climb));
+        }
+        let found = search.finish(climb);
+        let fitter = Fitter::new(there.family, there.searched()).stopped_by(self.stop);
+        if !(self.stop)() && reading::needs_less(&found, there.family, &fitter, better) {
+            let second = second.finish(second_climb);
+            if reading::nats(second.top(), found.top(), better) > 0.0 {
+                return (there, second);
+            }
+        }
+        (here, found)
+    }
+
     /// A search that has looked at sets of one effect.
     fn begun<'b, F: ModelFamily + ?Sized>(
         &'b self,
-        family: &'b F,
-        ahead: &'b dyn Ahead,
+        reading: &'b Reading<'b, F>,
     ) -> (Search<'b, F>, Climb) {
+        let (family, ahead) = (reading.family, reading.searched());
         let (base, excluded) = self.sets;
         let candidates: Vec<usize> = (0..family.terms().len())
             .filter(|&term| {
@@ -113,19 +178,11 @@ impl Run<'_> {
         Thresholds { most: thresholds.most.min(self.settings.most), ..thresholds }
     }
 
-    /// What was found, on all of the recording, judged and told.
-    fn told<F: ModelFamily + ?Sized>(
-        &self,
-        family: &F,
-        ahead: &dyn Ahead,
-        mut found: Found,
-    ) -> Discovery {
-        let thresholds = self.thresholds();
-        if family.ahead_in_part().is_some() {
-            found.confirm(family, ahead, &thresholds);
-        }
-        found.judge(family, ahead, &thresholds);
+    /// What was found, as a discovery.
+    fn told<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
         (self.tell)(&Event::Finishing);
+        let Sought { reading, found } = sought;
+        let (family, ahead) = (reading.family, &*reading.whole);
         let mut discovery = Report { family, ahead, settings: self.settings, found }.discovery();
         discovery.notes.extend(family.reading());
         discovery.seed = self.settings.seed;

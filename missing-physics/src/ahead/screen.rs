@@ -89,13 +89,17 @@ struct Screening<'a> {
 
 impl<'a> Screening<'a> {
     fn new<F: ModelFamily + ?Sized>(family: &F, ahead: &'a dyn Ahead, node: &'a Node) -> Self {
-        let scale = node.weighing(ahead.expected(node.setting));
+        let shrunk = node.deviation / node.scale;
+        let scale = node.weighing(ahead.expected(node.setting)) * shrunk;
         let weight: Vec<f64> =
-            node.errors.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
-        let own: Vec<Vec<f64>> =
-            node.jacobian(family, ahead).iter().map(|column| weighed(column, &weight)).collect();
+            node.innovations.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
+        let own: Vec<Vec<f64>> = node
+            .jacobian(family, ahead)
+            .iter()
+            .map(|column| weighed(&node.law.left(column, ahead.instants()), &weight))
+            .collect();
         let own = Basis::of(&own);
-        let mut left = weighed(&node.errors, &weight);
+        let mut left = weighed(&node.innovations, &weight);
         own.project_out(&mut left);
         Self { node, ahead, scale, weight, own, left }
     }
@@ -132,7 +136,18 @@ impl<'a> Screening<'a> {
             single(std::slice::from_ref(&self.left)).swap_remove(0),
             single(std::slice::from_ref(&self.weight)).swap_remove(0),
         );
-        Some(columns.par_iter().map(|pair| first_order(pair, &weight, &own, &left)).collect())
+        let white = |column: &Vec<f32>| -> Vec<f32> {
+            let column: Vec<f64> = column.iter().map(|v| f64::from(*v)).collect();
+            single(&[self.node.law.left(&column, self.ahead.instants())]).swap_remove(0)
+        };
+        let as_they_are = self.node.law.is_none();
+        let gain = |pair: &[Vec<f32>; 2]| {
+            if as_they_are {
+                return first_order(pair, &weight, &own, &left);
+            }
+            first_order(&pair.each_ref().map(white), &weight, &own, &left)
+        };
+        Some(columns.par_iter().map(gain).collect())
     }
 
     /// Gain of every trial as it is, the multiples of its sizes that reach it, and its columns.
@@ -178,14 +193,18 @@ impl<'a> Screening<'a> {
 
     /// Root mean square of what a trial changes, in scales.
     fn size(&self, errors: &[f64]) -> f64 {
-        let square: f64 = self.differences(errors).map(|change| change * change).sum();
+        let square: f64 = self.differences(errors).iter().map(|change| change * change).sum();
         (square / errors.len().max(1) as f64).sqrt() / self.scale
     }
 
-    /// What a trial changes in each error.
-    fn differences<'e>(&'e self, errors: &'e [f64]) -> impl Iterator<Item = f64> + 'e {
+    /// What a trial changes in each innovation.
+    fn differences(&self, errors: &[f64]) -> Vec<f64> {
+        let change: Vec<f64> =
+            errors.iter().zip(&self.node.errors).map(|(e, old)| e - old).collect();
         let cut = CUT * self.scale;
-        errors.iter().zip(&self.node.errors).map(move |(e, old)| (e - old).clamp(-cut, cut))
+        let mut change = self.node.law.left(&change, self.ahead.instants());
+        change.iter_mut().for_each(|change| *change = change.clamp(-cut, cut));
+        change
     }
 
     /// The best of a term's trials, and what all of them change where that is asked for.
@@ -220,8 +239,7 @@ impl<'a> Screening<'a> {
 
     /// What a trial changes, weighed and freed of what the model's own parameters do.
     fn change(&self, errors: &[f64]) -> Vec<f64> {
-        let change = self.differences(errors).zip(&self.weight);
-        let mut column: Vec<f64> = change.map(|(c, w)| c * w).collect();
+        let mut column = weighed(&self.differences(errors), &self.weight);
         self.own.project_out(&mut column);
         column
     }

@@ -137,7 +137,7 @@ impl Plant {
         };
         let bend = Parameter { name: "bend".into(), ..about("", -10.0, None).parameters.remove(0) };
         let terms = vec![
-            about("drive", -10.0, None),
+            about("drive", 1e-3, None),
             about("wave", -10.0, None),
             about("beat", -10.0, None),
             about("both", -10.0, None),

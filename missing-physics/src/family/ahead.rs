@@ -31,6 +31,16 @@ pub trait Ahead: Sync {
         None
     }
 
+    /// The same recording, its prediction errors judged by what an autoregression leaves of them.
+    fn coloured(&self) -> Option<Box<dyn Ahead + '_>> {
+        None
+    }
+
+    /// Whether errors are judged so.
+    fn is_coloured(&self) -> bool {
+        false
+    }
+
     /// Along what the errors may be uneven, beside time: name, unit and a value for each instant.
     fn along(&self) -> Vec<(String, String, Vec<f64>)> {
         Vec::new()

@@ -23,7 +23,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 .filter(|set| self.comparison.compare(set, top).nats <= near)
                 .min_by(|a, b| {
                     let fewer = self.parameters(a).cmp(&self.parameters(b));
-                    fewer.then(a.scale.total_cmp(&b.scale))
+                    fewer.then(a.deviation.total_cmp(&b.deviation))
                 })
                 .unwrap_or(top);
             let polished = self.refit(&simplest.model, simplest.setting, STEPS.2);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{FORM, LOWER, RESCANS, STEPS, Search, TRIED, negative};
+use crate::ahead::compare::Difference;
 use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
 use crate::ahead::screen::{Promise, screen};
@@ -26,7 +27,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let starts = promise.starts.par_iter();
         let tried: Vec<Node> =
             starts.map(|start| fitter.fit(start.clone(), setting, TRIED)).collect();
-        let best = tried.into_iter().min_by(|a, b| a.scale.total_cmp(&b.scale))?;
+        let best = tried.into_iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation))?;
         Some(fit(best.model, STEPS.0 - TRIED))
     }
 
@@ -41,10 +42,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let trials: Vec<(Fitted, usize)> =
                 beside.into_iter().map(|model| (model, node.setting)).collect();
             let errors = self.ahead.errors(&trials);
-            let nodes = trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(m, s, e));
-            let Some(best) = nodes.min_by(|a, b| a.scale.total_cmp(&b.scale)) else { break };
+            let nodes =
+                trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(self.ahead, m, s, e));
+            let Some(best) = nodes.min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
+                break;
+            };
             let fitted = self.refit(&best.model, node.setting, STEPS.1);
-            if fitted.scale > LOWER * node.scale {
+            if fitted.deviation > LOWER * node.deviation {
                 break;
             }
             node = fitted;
@@ -72,8 +76,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         best
     }
 
-    /// The same effects in their main forms, one by one, where those are as good.
-    pub(super) fn plainest(&mut self, node: Node) -> Node {
+    /// The same effects in their main forms, one by one, where those are as good and still needed: `costs` has the
+    /// models without each.
+    pub(super) fn plainest(&mut self, node: Node, costs: &[(usize, Difference, Node)]) -> Node {
         let mut best = node;
         for term in best.effects(self.family) {
             let Some(main) = self.family.form_of(term) else { continue };
@@ -89,7 +94,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let Some(plain) = self.begun(&start, best.setting) else { continue };
             let plain = self.refit(&plain.model, best.setting, STEPS.2);
             let loss = self.comparison.compare(&plain, &best);
-            let as_good = loss.nats < self.thresholds.better;
+            let without = costs.iter().find(|cost| self.main(cost.0) == main);
+            let needed = without.is_none_or(|(.., without)| {
+                self.comparison.compare(without, &plain).nats > self.thresholds.better
+            });
+            let as_good = loss.nats < self.thresholds.better && needed;
             let outcome = if as_good { Outcome::Added } else { Outcome::OtherShape };
             let from = best.clone();
             self.note(

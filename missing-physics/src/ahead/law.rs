@@ -1,0 +1,174 @@
+//! What colours the errors of a model: each is foretold in part by the few before it.
+//!
+//! What a model lacks swings for longer than a sample, so that its prediction errors resemble their neighbours. The
+//! likelihood of such errors is that of what an autoregression leaves of them (G. E. P. Box and G. M. Jenkins, 1970):
+//! that is white, and the autoregression's own determinant is 1. Its coefficients solve the equations of Yule and
+//! Walker by Levinson's recursion.
+
+use super::statistics;
+
+/// Most errors before one that foretell it.
+pub const ORDER: usize = 8;
+/// Errors beyond this many times their usual size count as that where the law is found: a spike is no colour.
+const CUT: f64 = 6.0;
+/// The usual size is the median's, and at least this share of the root mean square.
+const LEAST: f64 = 0.3;
+
+/// An autoregression: coefficients of every order up to [`ORDER`], for the first errors of a piece have fewer before
+/// them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    orders: Vec<Vec<f64>>,
+}
+
+impl Law {
+    /// Of errors that nothing foretells.
+    pub fn none() -> Self {
+        Self { orders: vec![Vec::new()] }
+    }
+
+    /// Whether it leaves all errors as they are.
+    pub fn is_none(&self) -> bool {
+        self.orders.len() == 1
+    }
+
+    /// Of errors that lie at `instants` of a recording; pieces of it have nothing to do with each other.
+    pub fn of(errors: &[f64], instants: &[(f64, usize)]) -> Self {
+        let usual = statistics::spread(errors).max(LEAST * statistics::rms(errors, f64::INFINITY));
+        let cut: Vec<f64> = errors.iter().map(|e| e.max(-CUT * usual).min(CUT * usual)).collect();
+        let mut products = [0.0; ORDER + 1];
+        for piece in runs(&cut, instants) {
+            for (lag, product) in products.iter_mut().enumerate().take(piece.len()) {
+                *product +=
+                    crate::statistics::basis::dot(&piece[lag..], &piece[..piece.len() - lag]);
+            }
+        }
+        Self { orders: levinson(&products) }
+    }
+
+    /// What it leaves of errors.
+    pub fn left(&self, errors: &[f64], instants: &[(f64, usize)]) -> Vec<f64> {
+        let mut left = Vec::with_capacity(errors.len());
+        for piece in runs(errors, instants) {
+            for (k, error) in piece.iter().enumerate() {
+                let known = &self.orders[k.min(self.orders.len() - 1)];
+                let before = piece[..k].iter().rev();
+                let foretold: f64 = known.iter().zip(before).map(|(a, e)| a * e).sum();
+                left.push(error - foretold);
+            }
+        }
+        left
+    }
+}
+
+/// The errors of each piece.
+fn runs<'e>(errors: &'e [f64], instants: &'e [(f64, usize)]) -> impl Iterator<Item = &'e [f64]> {
+    let mut first = 0;
+    instants.chunk_by(|a, b| a.1 == b.1).map(move |piece| {
+        let run = &errors[first..first + piece.len()];
+        first += piece.len();
+        run
+    })
+}
+
+/// Coefficients of every order from none, by the sums of products at each lag (N. Levinson, 1947).
+fn levinson(products: &[f64]) -> Vec<Vec<f64>> {
+    let mut orders: Vec<Vec<f64>> = vec![Vec::new()];
+    let mut left = products[0];
+    for order in 1..products.len() {
+        let last = &orders[order - 1];
+        let foretold: f64 =
+            last.iter().zip((1..order).rev()).map(|(a, lag)| a * products[lag]).sum();
+        let reflected = (products[order] - foretold) / left;
+        // Nothing is left to foretell, or nothing is known.
+        if !(reflected.abs() < 1.0) {
+            break;
+        }
+        let mut next: Vec<f64> =
+            last.iter().zip(last.iter().rev()).map(|(a, b)| a - reflected * b).collect();
+        next.push(reflected);
+        left *= 1.0 - reflected * reflected;
+        orders.push(next);
+    }
+    orders
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    fn noise(count: usize, seed: u64) -> Vec<f64> {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
+        (0..count).map(|_| StandardNormal.sample(&mut random)).collect()
+    }
+
+    /// Noise that rings: poles of radius 0.9.
+    fn ringing(noise: &[f64]) -> Vec<f64> {
+        let mut errors: Vec<f64> = Vec::new();
+        for new in noise {
+            let before = |lag: usize| errors.len().checked_sub(lag).map_or(0.0, |k| errors[k]);
+            errors.push(new + 1.5 * before(1) - 0.81 * before(2));
+        }
+        errors
+    }
+
+    fn one_piece(count: usize) -> Vec<(f64, usize)> {
+        (0..count).map(|k| (k as f64, 0)).collect()
+    }
+
+    #[test]
+    fn what_is_left_of_coloured_errors_is_the_noise_that_made_them() {
+        let made = noise(20_000, 1);
+        let errors = ringing(&made);
+        let instants = one_piece(errors.len());
+        let law = Law::of(&errors, &instants);
+        let (first, second) = (law.orders[ORDER][0], law.orders[ORDER][1]);
+        assert!((first - 1.5).abs() < 0.05 && (second + 0.81).abs() < 0.05, "{first} {second}");
+        let left = law.left(&errors, &instants);
+        let off: Vec<f64> = left.iter().zip(&made).map(|(a, b)| a - b).collect();
+        assert!(statistics::rms(&off, f64::INFINITY) < 0.05);
+        assert_eq!(statistics::correlation(&left), 1.0);
+    }
+
+    #[test]
+    fn errors_that_nothing_foretells_stay_as_they_are() {
+        let errors = noise(5_000, 2);
+        let instants = one_piece(errors.len());
+        let left = Law::of(&errors, &instants).left(&errors, &instants);
+        let off: Vec<f64> = left.iter().zip(&errors).map(|(a, b)| a - b).collect();
+        assert!(statistics::rms(&off, f64::INFINITY) < 0.06);
+        // Nothing is known of none.
+        for nothing in [vec![0.0; 50], vec![f64::NAN; 50], Vec::new()] {
+            let instants = &instants[..nothing.len()];
+            let left = Law::of(&nothing, instants).left(&nothing, instants);
+            assert_eq!(format!("{left:?}"), format!("{nothing:?}"));
+        }
+    }
+
+    #[test]
+    fn pieces_have_nothing_to_do_with_each_other() {
+        let errors = ringing(&noise(2_000, 3));
+        let instants: Vec<(f64, usize)> = (0..2_000).map(|k| (k as f64, k / 500)).collect();
+        let law = Law::of(&errors, &instants);
+        let left = law.left(&errors, &instants);
+        for first in [0, 500, 1000, 1500] {
+            assert_eq!(left[first], errors[first]);
+            let piece = law.left(&errors[first..first + 500], &instants[first..first + 500]);
+            assert_eq!(left[first..first + 500], piece);
+        }
+    }
+
+    #[test]
+    fn a_few_wild_errors_are_no_colour() {
+        let mut errors = noise(20_000, 4);
+        let instants = one_piece(errors.len());
+        errors[7_000] = 1e3;
+        errors[7_001] = 1e3;
+        // As they are these two would say that half of an error follows from the one before.
+        let law = Law::of(&errors, &instants);
+        assert!(law.orders[1][0].abs() < 0.02, "{:?}", law.orders[1]);
+    }
+}
