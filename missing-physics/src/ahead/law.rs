@@ -81,7 +81,7 @@ fn levinson(products: &[f64]) -> Vec<Vec<f64>> {
             last.iter().zip((1..order).rev()).map(|(a, lag)| a * products[lag]).sum();
         let reflected = (products[order] - foretold) / left;
         // Nothing is left to foretell, or nothing is known.
-        if !(reflected.abs() < 1.0) {
+        if reflected.is_nan() || reflected.abs() >= 1.0 {
             break;
         }
         let mut next: Vec<f64> =

@@ -202,9 +202,8 @@ impl<'a> Screening<'a> {
         let change: Vec<f64> =
             errors.iter().zip(&self.node.errors).map(|(e, old)| e - old).collect();
         let cut = CUT * self.scale;
-        let mut change = self.node.law.left(&change, self.ahead.instants());
-        change.iter_mut().for_each(|change| *change = change.clamp(-cut, cut));
-        change
+        let change = self.node.law.left(&change, self.ahead.instants());
+        change.into_iter().map(|change| change.clamp(-cut, cut)).collect()
     }
 
     /// The best of a term's trials, and what all of them change where that is asked for.

@@ -127,18 +127,27 @@ impl<'a> Joint<'a> {
         best
     }
 
+    /// Scalar products of all profiled columns with another one.
+    fn products(&self, column: &[f64]) -> Vec<f64> {
+        if self.columns.nrows() == 0 {
+            return Vec::new();
+        }
+        let product = &self.columns * DMatrix::from_column_slice(column.len(), 1, column);
+        product.as_slice().to_vec()
+    }
+
     /// The best of every pair on a residual free of the model's own columns, in a fixed order.
     fn best(&self, residual: &[f64], alone: &[Option<usize>]) -> Vec<Option<Best>> {
         let total = dot(residual, residual).max(f64::MIN_POSITIVE);
-        let moments = &self.columns * DMatrix::from_column_slice(residual.len(), 1, residual);
-        let mut pairs = vec![None; self.candidates * (self.candidates - 1) / 2];
+        let moments = self.products(residual);
+        let mut pairs = vec![None; self.candidates * self.candidates.saturating_sub(1) / 2];
         for (a, first) in alone.iter().enumerate() {
             let Some(first) = *first else { continue };
             let own = Own::new(self, first, residual);
             for b in (0..self.candidates).filter(|&b| b != a) {
                 let place = &mut pairs[place(a, b)];
                 for &second in &self.profiled[b] {
-                    let share = own.with(self, second, moments.as_slice()) / total;
+                    let share = own.with(self, second, &moments) / total;
                     if place.is_none_or(|best: Best| share > best.share) {
                         *place = Some(Best { trials: [first, second], share });
                     }
@@ -170,14 +179,7 @@ impl<'a> Own<'a> {
             Some(row) => (row..row + trial.columns.len())
                 .map(|r| joint.gram.column(r).iter().copied().collect())
                 .collect(),
-            None => trial
-                .columns
-                .iter()
-                .map(|c| {
-                    let product = &joint.columns * DMatrix::from_column_slice(c.len(), 1, c);
-                    product.as_slice().to_vec()
-                })
-                .collect(),
+            None => trial.columns.iter().map(|column| joint.products(column)).collect(),
         };
         let moment = trial.columns.iter().map(|column| dot(column, residual)).collect();
         Self { trial, moment, cross }

@@ -6,7 +6,7 @@
 /// `N s/m` keep theirs.
 ///
 /// ```
-/// use missing_physics::quantity::quantity;
+/// use missing_physics::measurement::quantity::quantity;
 /// assert_eq!(quantity(0.0011, "m/s"), "1.10 mm/s");
 /// assert_eq!(quantity(203.5, "N s/m"), "204 N s/m");
 /// assert_eq!(quantity(5e-8, "m"), "50.0 nm");
