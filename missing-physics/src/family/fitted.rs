@@ -1,6 +1,6 @@
 //! A model with its values.
 
-/// A model with its values: terms by their index in [`ModelFamily::terms`], parameters one term
+/// A model with its values: terms by their index in [`ModelFamily::terms`](super::ModelFamily::terms), parameters one term
 /// after the other.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Fitted {
