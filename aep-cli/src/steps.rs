@@ -172,5 +172,6 @@ pub fn other_axis() -> Failure {
 
 /// The plant that a rung describes.
 pub fn model(family: &FrictionFamily, rung: &Rung) -> Result<Model, Failure> {
-    Ok(family.model(&model_of(family, rung)?)?)
+    let model = family.model(&model_of(family, rung)?)?;
+    Ok(model.with_known(family.known().clone()))
 }

@@ -9,7 +9,8 @@ use missing_physics::{Discovery, Fitted, confirm, discover};
 use super::table::{among, plain, record};
 
 /// What is looked for, apart from what is there.
-const AMONG: [&str; 5] = ["stribeck", "asymmetry", "spring", "quadratic-drag", "drift"];
+const AMONG: [&str; 7] =
+    ["stribeck", "asymmetry", "spring", "quadratic-drag", "drift", "ripple", "position-friction"];
 
 fn from_file(plant: &Model) -> FrictionFamily {
     let folder = tempfile::tempdir().unwrap();
@@ -49,6 +50,20 @@ fn what_was_hidden_is_named_with_its_size_and_holds_elsewhere() {
         let again = confirm(&from_file(&model), &found.ladder, &among(&family, &AMONG)).unwrap();
         assert_eq!(again.last().unwrap().holds, Some(true), "{again:?}");
     }
+}
+
+/// Beside either of them the other one still does so much that it gains next to nothing.
+#[test]
+fn two_strong_effects_that_hide_each_other_are_both_named() {
+    let plant = plain()
+        .with("position-friction", &[("c_1", 5.0), ("c_2", 1.5), ("c_5", 2.4), ("c_9", -1.8)])
+        .and_then(|plant| plant.with("ripple", &[("a_1", 1.3), ("a_2", 0.8), ("l", 0.005)]))
+        .unwrap();
+    let (_, found) = searched(&plant);
+    let main = |name: &String| name.split(':').next().unwrap_or_default().to_owned();
+    let mut named: Vec<String> = found.added.iter().map(main).collect();
+    named.sort();
+    assert_eq!(named, ["position-friction", "ripple"], "{}", found.summary);
 }
 
 #[test]

@@ -31,7 +31,9 @@ fn an_effect_of_ones_own_goes_through_every_command() {
     let ranking = desk.json("s.json")["ranking"][0].to_string();
     assert!(ranking.contains("\"seal\""), "{ranking}");
     desk.write("bad.toml", DRAG.replace("tanh(v / w)", "tanh(v / u)"));
-    desk.aep("effects --effects-file bad.toml").refused(&["uses 'u'", "bad.toml"]);
+    // A name that is no parameter is a column of the recording, or nothing.
+    let bad = format!("identify {data} --effects coulomb,seal -o b.json --effects-file bad.toml");
+    desk.aep(&bad).refused(&["no column for the effect called 'u'"]);
 }
 
 #[test]

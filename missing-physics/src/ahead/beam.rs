@@ -208,7 +208,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             let size = costs.len();
             let known = |set: &Node| self.key(set) == self.key(&needed);
             let sets = climb.nodes.get(size).map_or(&[][..], Vec::as_slice);
-            if sets.iter().any(known) || self.budget(&needed) < INSIDE || (self.stop)() {
+            let whole = climb.nodes.len() <= size;
+            if whole || sets.iter().any(known) || self.budget(&needed) < INSIDE || (self.stop)() {
                 return needed;
             }
             climb.nodes.truncate(size + 1);
