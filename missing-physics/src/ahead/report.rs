@@ -26,6 +26,10 @@ use crate::statistics::split::Split;
 use crate::statistics::weights;
 use crate::task::{Event, Observer, Settings, Thresholds};
 
+/// What is told where time ran out in the second look.
+const CUT: &str =
+    "Time ran out before it was known whether other effects, which hide each other, do as much.";
+
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 pub fn discover<F: ModelFamily + ?Sized>(
     here: &Reading<'_, F>,
@@ -44,7 +48,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let run = Run { settings, sets, started, stop: &stop, tell: &tell };
     let there = here.family.other_reading().filter(|_| !stop());
     let there = there.and_then(|(other, nats)| Some((Reading::of(other)?, nats)));
-    let first = run.sought(here, there.as_ref());
+    let mut first = run.sought(here, there.as_ref());
     // A wrong reading takes an effect of its own to leave nothing.
     let doubtful = there.is_some() && first.found.added.len() > 1;
     if (first.found.complete && !doubtful) || stop() {
@@ -57,6 +61,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let mut second = run.sought(&here, there.as_ref());
     let plainer = second.found.added.len() < first.found.added.len();
     if !second.found.complete || (first.found.complete && !plainer) {
+        if stop() {
+            first.found.notes.push(CUT.to_owned());
+        }
         return run.told(first);
     }
     second.found.decisions.splice(0..0, first.found.decisions);
