@@ -48,11 +48,14 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let run = Run { settings, sets, started, stop: &stop, tell: &tell };
     let there = here.family.other_reading().filter(|_| !stop());
     let there = there.and_then(|(other, nats)| Some((Reading::of(other)?, nats)));
-    let mut first = run.sought(here, there.as_ref());
+    let first = run.sought(here, there.as_ref());
     // A wrong reading takes an effect of its own to leave nothing.
     let doubtful = there.is_some() && first.found.added.len() > 1;
-    if (first.found.complete && !doubtful) || stop() {
+    if first.found.complete && !doubtful {
         return run.told(first);
+    }
+    if stop() {
+        return run.told(first.cut());
     }
     // What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
     // effects are missing none of them is seen beside the others. What is then found counts where it leaves nothing.
@@ -61,10 +64,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let mut second = run.sought(&here, there.as_ref());
     let plainer = second.found.added.len() < first.found.added.len();
     if !second.found.complete || (first.found.complete && !plainer) {
-        if stop() {
-            first.found.notes.push(CUT.to_owned());
-        }
-        return run.told(first);
+        return run.told(if stop() { first.cut() } else { first });
     }
     second.found.decisions.splice(0..0, first.found.decisions);
     run.told(second)
@@ -100,6 +100,15 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
 struct Sought<'a, F: ModelFamily + ?Sized> {
     reading: &'a Reading<'a, F>,
     found: Found,
+}
+
+impl<F: ModelFamily + ?Sized> Sought<'_, F> {
+    /// The same where time ran out before the second look was over.
+    fn cut(mut self) -> Self {
+        self.found.stopped = true;
+        self.found.notes.push(CUT.to_owned());
+        self
+    }
 }
 
 /// One discovery, whatever the reading.
