@@ -36,34 +36,34 @@ const fn one(name: &'static str, about: &'static str, call: fn(f64) -> f64) -> F
     Function { name, about, call: Call::One(call) }
 }
 
+const fn two(name: &'static str, about: &'static str, call: fn(f64, f64) -> f64) -> Function {
+    Function { name, about, call: Call::Two(call) }
+}
+
+const fn three(
+    name: &'static str,
+    about: &'static str,
+    call: fn(f64, f64, f64) -> f64,
+) -> Function {
+    Function { name, about, call: Call::Three(call) }
+}
+
+const fn many(name: &'static str, about: &'static str, call: fn(f64, f64) -> f64) -> Function {
+    Function { name, about, call: Call::Many(call) }
+}
+
 /// Every function.
 pub const FUNCTIONS: &[Function] = &[
     one("abs", "abs(x)            size without sign", f64::abs),
     one("sign", "sign(x)           -1, 0 or 1", sign),
-    Function { name: "min", about: "min(a, b, ..)     the least", call: Call::Many(f64::min) },
-    Function { name: "max", about: "max(a, b, ..)     the largest", call: Call::Many(f64::max) },
-    Function {
-        name: "clamp",
-        about: "clamp(x, low, high)  x, but within low .. high",
-        call: Call::Three(clamp),
-    },
-    Function {
-        name: "if",
-        about: "if(c, a, b)       a where c is not 0, else b",
-        call: Call::Three(choose),
-    },
+    many("min", "min(a, b, ..)     the least", f64::min),
+    many("max", "max(a, b, ..)     the largest", f64::max),
+    three("clamp", "clamp(x, low, high)  x, but within low .. high", clamp),
+    three("if", "if(c, a, b)       a where c is not 0, else b", choose),
     one("sqrt", "sqrt(x)           square root", f64::sqrt),
     one("cbrt", "cbrt(x)           cube root", f64::cbrt),
-    Function {
-        name: "pow",
-        about: "pow(a, b)         a to the power b",
-        call: Call::Two(f64::powf),
-    },
-    Function {
-        name: "hypot",
-        about: "hypot(a, b)       sqrt(a^2 + b^2)",
-        call: Call::Two(f64::hypot),
-    },
+    two("pow", "pow(a, b)         a to the power b", f64::powf),
+    two("hypot", "hypot(a, b)       sqrt(a^2 + b^2)", f64::hypot),
     one("exp", "exp(x)            e to the power x", f64::exp),
     one("log", "log(x), ln(x)     natural logarithm", f64::ln),
     one("ln", "", f64::ln),
@@ -75,11 +75,7 @@ pub const FUNCTIONS: &[Function] = &[
     one("asin", "asin(x)", f64::asin),
     one("acos", "acos(x)", f64::acos),
     one("atan", "atan(x)", f64::atan),
-    Function {
-        name: "atan2",
-        about: "atan2(y, x)       angle of the point (x, y)",
-        call: Call::Two(f64::atan2),
-    },
+    two("atan2", "atan2(y, x)       angle of the point (x, y)", f64::atan2),
     one("sinh", "sinh(x)", f64::sinh),
     one("cosh", "cosh(x)", f64::cosh),
     one("tanh", "tanh(x)", f64::tanh),

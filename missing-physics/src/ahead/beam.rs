@@ -5,18 +5,17 @@
 //! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
 
 mod conclude;
+mod grow;
 mod rivals;
 mod shape;
 
 use std::collections::BTreeSet;
 
-use rayon::prelude::*;
-
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::found::{Found, Ranked};
 use super::node::Node;
-use super::screen::{Promise, Screened, screen};
+use super::screen::{Screened, screen};
 use super::{Ahead, scales};
 use crate::family::{Fitted, ModelFamily, Role};
 use crate::report::{Decision, Outcome};
@@ -31,21 +30,8 @@ const BASE: usize = 8;
 /// Most valleys that are left for a lower one, and by how much lower it must be.
 const RESCANS: usize = 3;
 const LOWER: f64 = 0.99;
-/// Only models whose errors are within this factor of the best of their size are looked at so closely.
-const NEAR: f64 = 1.25;
-/// Promise below which a candidate is not fitted beside the base, nats.
-const PROMISING: f64 = 2.0;
 /// A model is well inside the budget below this multiple of it.
 const INSIDE: f64 = 1.12;
-/// A search ends where chance gains as much as the best candidate this often: two effects may hide each other, but not
-/// so well.
-const HOPELESS: f64 = 0.5;
-/// Candidates that are fitted before it is asked whether others are needed, and the share of their promise from which
-/// another one is.
-const FIRST: usize = 2;
-const COMPARABLE: f64 = 0.1;
-/// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
-const AGAIN: usize = 8;
 /// Share of an amplitude of every model below which nothing of it is left.
 const GONE: f64 = 0.01;
 /// A form must be better than another one by this much to take its place, nats.
@@ -235,197 +221,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let open = self.candidates.iter().copied();
         let open: Vec<usize> = open.filter(|&t| self.family.joins(&node.model, t)).collect();
         screen(self.family, self.ahead, node, &open, true)
-    }
-
-    /// Sets with one effect more.
-    fn grow(&mut self, climb: &mut Climb) {
-        let size = climb.nodes.len();
-        let mut next: Vec<(Node, Difference)> = Vec::new();
-        let mut least = None;
-        for (place, from) in climb.beam.iter().enumerate() {
-            let (children, screened) = self.expand(&climb.base, from, size, place == 0);
-            if place == 0 {
-                let gains = children.iter().map(|child| self.comparison.compare(from, child));
-                least = gains.map(|gain| self.p_value(&screened, gain)).reduce(f64::min);
-                climb.ranking.push(self.ranked(from, &children, screened));
-            }
-            for child in children {
-                let gain = self.comparison.compare(from, &child);
-                if let Some((_, reason)) = self.refused(&climb.base, &child) {
-                    self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
-                    if gain.nats > self.thresholds.better && size == 1 {
-                        let effects = self.names(&child).join(" + ");
-                        self.notes.push(format!("{effects} is not named: {reason}"));
-                    }
-                    continue;
-                }
-                let gains = gain.nats > self.thresholds.better;
-                let outcome = if gains { Outcome::AsGood } else { Outcome::TooLittle };
-                self.note(size, &child, from, gain, outcome, "");
-                let effects = self.names(&child);
-                let nats = self.in_full(gain.nats);
-                (self.tell)(&Event::Compared { rung: size, effects: &effects, nats });
-                if !gains {
-                    continue;
-                }
-                let same = |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
-                match next.iter().position(same) {
-                    Some(k) if self.comparison.compare(&next[k].0, &child).nats > 0.0 => {
-                        next[k] = (child, gain);
-                    }
-                    Some(_) => {}
-                    None => next.push((child, gain)),
-                }
-            }
-        }
-        let ranked = self.sorted(next.into_iter().map(|(node, _)| node).collect());
-        // A size that was cut short says nothing: the best of it may not have been fitted. Nor does one where chance
-        // gains as much as the best.
-        let by_chance = least.is_some_and(|p| p > HOPELESS);
-        if ranked.is_empty() || by_chance || (self.stop)() || self.thresholds.most == 0 {
-            if (self.stop)() && size == 1 {
-                // Of none of them anything can be said.
-                let open = self.candidates.iter();
-                let open = open.filter(|term| self.family.joins(&climb.base.model, **term));
-                self.untried.extend(open);
-            }
-            climb.ended = true;
-            return;
-        }
-        // Inside the budget rivals need no extension.
-        let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
-        climb.beam = ranked.iter().take(width).cloned().collect();
-        climb.nodes.push(ranked);
-    }
-
-    /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
-    fn expand(
-        &mut self,
-        base: &Node,
-        from: &Node,
-        size: usize,
-        first: bool,
-    ) -> (Vec<Node>, Screened) {
-        let open: Vec<usize> = self
-            .candidates
-            .iter()
-            .copied()
-            .filter(|&term| self.family.joins(&from.model, term))
-            .filter(|&term| first || self.promised.contains(&self.main(term)))
-            .collect();
-        if (self.stop)() {
-            self.untried.extend(open);
-            return (Vec::new(), Screened::default());
-        }
-        (self.tell)(&Event::Screening { rung: size, candidates: open.len() });
-        let screened = screen(self.family, self.ahead, from, &open, first);
-        if first {
-            let mut best = BTreeSet::new();
-            for promise in &screened.promises {
-                if best.len() < AGAIN {
-                    best.insert(self.main(promise.term));
-                }
-            }
-            self.promised.append(&mut best);
-        }
-        // The first order seldom promises less than half of what a fit gains.
-        let least = if size == 1 {
-            PROMISING
-        } else {
-            0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
-        };
-        let most = if size == 1 {
-            self.thresholds.fitted
-        } else {
-            self.thresholds.fitted.min(self.thresholds.beam)
-        };
-        // Two forms of an effect at most, so that one effect does not take all places.
-        let mut mains: Vec<usize> = Vec::new();
-        let mut starts: Vec<&Promise> = Vec::new();
-        for promise in screened.promises.iter().filter(|promise| promise.gain > least) {
-            let main = self.main(promise.term);
-            let forms = mains.iter().filter(|other| **other == main).count();
-            let distinct = mains.iter().collect::<BTreeSet<_>>().len();
-            if forms >= 2 || (forms == 0 && distinct >= most) {
-                continue;
-            }
-            mains.push(main);
-            starts.push(promise);
-        }
-        let begin = |promises: &[&Promise]| -> Vec<(usize, Option<Node>)> {
-            promises.par_iter().map(|p| (p.term, self.begun(p, from.setting))).collect()
-        };
-        // Where one of the first leaves no more than the sensors make, only those that promise as much are needed.
-        let (first, others) = starts.split_at(FIRST.min(starts.len()));
-        let mut fitted = begin(first);
-        let inside =
-            fitted.iter().flat_map(|(_, node)| node).any(|node| self.budget(node) < INSIDE);
-        let top = starts.first().map_or(0.0, |promise| promise.gain);
-        let needed: Vec<&Promise> =
-            others.iter().copied().filter(|p| !inside || p.gain >= COMPARABLE * top).collect();
-        fitted.extend(begin(&needed));
-        self.untried
-            .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
-        let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
-        fitted.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
-        let keep = if size == 1 { self.thresholds.fitted } else { self.thresholds.beam };
-        fitted.truncate(keep);
-        let mut settled: Vec<Node> =
-            fitted.into_par_iter().map(|node| self.fitter().settled(node, STEPS.1)).collect();
-        let best = settled.iter().map(|node| node.deviation).fold(f64::INFINITY, f64::min);
-        settled = settled
-            .into_par_iter()
-            .map(|node| if node.deviation <= NEAR * best { self.rescanned(&node) } else { node })
-            .collect();
-        let known =
-            |model: &Fitted| model.terms.last().is_some_and(|term| self.candidates.contains(term));
-        let related: Vec<(Fitted, usize)> = settled
-            .iter()
-            .filter(|node| node.deviation <= NEAR * best)
-            .flat_map(|node| {
-                let related = self.ahead.relatives(&node.model).into_iter();
-                related.filter(known).map(|model| (model, node.setting)).collect::<Vec<_>>()
-            })
-            .collect();
-        let related: Vec<Node> = related
-            .into_par_iter()
-            .map(|(start, setting)| self.refit(&start, setting, STEPS.2))
-            .collect();
-        settled.extend(related);
-        settled.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
-        let beam = self.thresholds.beam;
-        let shaped = settled.into_par_iter().enumerate();
-        let shaped = shaped
-            .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
-        (shaped.collect(), screened)
-    }
-
-    /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.
-    fn ranked(&self, from: &Node, children: &[Node], screened: Screened) -> Ranked {
-        let mut rows: Vec<(usize, Fitted, f64)> = Vec::new();
-        for promise in screened.promises {
-            let main = self.main(promise.term);
-            if rows.iter().any(|(term, ..)| self.main(*term) == main) {
-                continue;
-            }
-            let has =
-                |node: &&Node| node.effects(self.family).iter().any(|t| self.main(*t) == main);
-            let fitted = children.iter().find(has);
-            let row = fitted.map(|node| {
-                let term = node.effects(self.family).into_iter().find(|t| self.main(*t) == main);
-                let gain = self.comparison.compare(from, node).nats;
-                (term.unwrap_or(promise.term), node.model.clone(), gain)
-            });
-            let start = promise.starts.into_iter().next().unwrap_or_default();
-            let (term, model, gain) = row.unwrap_or((promise.term, start, promise.gain));
-            rows.push((term, model, self.in_full(gain)));
-        }
-        rows.sort_by(|a, b| b.2.total_cmp(&a.2));
-        Ranked {
-            rows,
-            chance: screened.chance,
-            points: self.in_full(from.errors.len() as f64 / from.correlation()),
-        }
     }
 
     /// Prediction error over what the sensors alone make.

@@ -11,6 +11,7 @@ pub mod fit;
 mod found;
 mod law;
 mod local;
+mod looks;
 pub mod node;
 mod reading;
 mod report;
@@ -20,7 +21,7 @@ pub mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use report::{Reading, discover};
+pub use looks::{Reading, discover};
 
 pub use crate::family::{Ahead, Columns, Rival, Trial, trials};
 pub use crate::task::Thresholds;
