@@ -71,7 +71,8 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     thresholds: Thresholds,
     /// Terms that may be added.
     candidates: Vec<usize>,
-    decisions: Vec<Decision>,
+    /// Every comparison so far.
+    pub decisions: Vec<Decision>,
     notes: Vec<String>,
     stop: &'a (dyn Fn() -> bool + Sync),
     tell: Tell<'a>,
@@ -226,6 +227,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// Prediction error over what the sensors alone make.
     pub fn budget(&self, node: &Node) -> f64 {
         node.scale / self.ahead.budget()
+    }
+
+    /// Whether a model leaves no more than the sensors make, as far as one number tells.
+    pub fn is_complete(&self, node: &Node) -> bool {
+        self.budget(node) <= self.thresholds.complete
     }
 
     /// Terms of a node that the base does not have, in the order of the model.

@@ -11,7 +11,7 @@ use super::report::Report;
 use super::{Ahead, reading};
 use crate::family::ModelFamily;
 use crate::fit;
-use crate::report::Discovery;
+use crate::report::{Decision, Discovery};
 use crate::task::{Event, Observer, Settings, Thresholds};
 
 /// What is told where time ran out in the second look.
@@ -19,6 +19,10 @@ const CUT: &str =
     "Time ran out before it was known whether other effects, which hide each other, do as much.";
 
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
+///
+/// What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
+/// effects are missing none of them is seen beside the others. A second look judges what an autoregression leaves of the
+/// errors. What it finds counts where it leaves nothing.
 pub fn discover<F: ModelFamily + ?Sized>(
     here: &Reading<'_, F>,
     settings: &Settings<'_>,
@@ -33,29 +37,47 @@ pub fn discover<F: ModelFamily + ?Sized>(
             observer.event(event);
         }
     };
-    let run = Run { settings, sets, started, stop: &stop, tell: &tell };
+    let thresholds = settings.thresholds;
+    let most = thresholds.most.min(settings.most);
+    let thresholds = Thresholds { most, ..thresholds };
+    let run = Run { settings, sets, thresholds, started, stop: &stop, tell: &tell };
     let there = here.family.other_reading().filter(|_| !stop());
     let there = there.and_then(|(other, nats)| Some((Reading::of(other)?, nats)));
-    let first = run.sought(here, there.as_ref());
+    let coloured = here.coloured();
+    let coloured = coloured.as_ref().map(|here| {
+        let there = there.as_ref().and_then(|(there, nats)| Some((there.coloured()?, *nats)));
+        (here, there)
+    });
+    let look = |most: usize| {
+        let (here, there) = coloured.as_ref().filter(|_| most > 0 && !stop())?;
+        let run = Run { thresholds: Thresholds { most, ..run.thresholds }, ..run };
+        Some(run.begun(here, there.as_ref()).finished())
+    };
+
+    let begun = run.begun(here, there.as_ref());
+    // Where one effect leaves something two may hide each other: the second look tells sooner.
+    let second = if begun.is_complete() { None } else { look(most) };
+    let second = match second {
+        Some(second) if second.is_pair() => return run.told(second.after(begun.decisions())),
+        other => other,
+    };
+    let first = begun.finished();
     // A wrong reading takes an effect of its own to leave nothing.
     let doubtful = there.is_some() && first.found.added.len() > 1;
     if first.found.complete && !doubtful {
         return run.told(first);
     }
-    if stop() {
-        return run.told(first.cut());
+    // Beside a complete one only fewer effects count.
+    let fewer = if first.found.complete { first.found.added.len() - 1 } else { most };
+    let second = second.or_else(|| look(fewer));
+    match second {
+        Some(second) if second.is_plainer_than(&first) => {
+            run.told(second.after(first.found.decisions))
+        }
+        Some(second) if !second.found.stopped => run.told(first),
+        None if !stop() => run.told(first),
+        _ => run.told(first.cut()),
     }
-    // What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
-    // effects are missing none of them is seen beside the others. What is then found counts where it leaves nothing.
-    let Some(here) = here.coloured() else { return run.told(first) };
-    let there = there.as_ref().and_then(|(there, nats)| Some((there.coloured()?, *nats)));
-    let mut second = run.sought(&here, there.as_ref());
-    let plainer = second.found.added.len() < first.found.added.len();
-    if !second.found.complete || (first.found.complete && !plainer) {
-        return run.told(if stop() { first.cut() } else { first });
-    }
-    second.found.decisions.splice(0..0, first.found.decisions);
-    run.told(second)
 }
 
 /// A recording as it is read: how its input acts between samples.
@@ -84,6 +106,77 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     }
 }
 
+/// A search in one reading that has looked at sets of one effect.
+struct Pursuit<'a, F: ModelFamily + ?Sized> {
+    reading: &'a Reading<'a, F>,
+    search: Search<'a, F>,
+    climb: Climb,
+}
+
+impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
+    fn is_complete(&self) -> bool {
+        self.search.is_complete(self.climb.top().0)
+    }
+}
+
+/// The same in each reading that the recording allows.
+struct Begun<'a, F: ModelFamily + ?Sized> {
+    here: Pursuit<'a, F>,
+    /// The other one, and by how many nats the simplest model prefers the first.
+    there: Option<(Pursuit<'a, F>, f64)>,
+    thresholds: Thresholds,
+    stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
+    /// Whether one effect, or none, leaves no more than the sensors make.
+    fn is_complete(&self) -> bool {
+        self.here.is_complete() || self.there.as_ref().is_some_and(|(there, _)| there.is_complete())
+    }
+
+    /// What was compared so far.
+    fn decisions(self) -> Vec<Decision> {
+        let there = self.there.map(|(there, _)| there.search.decisions);
+        self.here.search.decisions.into_iter().chain(there.into_iter().flatten()).collect()
+    }
+
+    /// What is found in the reading that stands: on all of the recording, judged.
+    fn finished(self) -> Sought<'a, F> {
+        let thresholds = self.thresholds;
+        let (reading, mut found) = self.found();
+        if reading.part.is_some() {
+            found.confirm(reading.family, &*reading.whole, &thresholds);
+        }
+        found.judge(reading.family, &*reading.whole, &thresholds);
+        Sought { reading, found }
+    }
+
+    /// What is found in the reading that stands, as far as it was searched.
+    fn found(self) -> (&'a Reading<'a, F>, Found) {
+        let Self { here, there, thresholds, stop } = self;
+        let Some((there, nats)) = there else {
+            return (here.reading, here.search.finish(here.climb));
+        };
+        let other = there.reading;
+        let better = thresholds.in_part(other.searched().share()).better;
+        if reading::nats(there.climb.top(), here.climb.top(), better) > nats {
+            return (other, there.search.finish(there.climb));
+        }
+        let found = here.search.finish(here.climb);
+        let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
+        if !stop() && reading::needs_less(&found, other.family, &fitter, better) {
+            let second = there.search.finish(there.climb);
+            if reading::nats(second.top(), found.top(), better) > 0.0 {
+                return (other, second);
+            }
+        }
+        (here.reading, found)
+    }
+}
+
+/// Two effects are the fewest that hide each other.
+const PAIR: usize = 2;
+
 /// What was found in a reading.
 struct Sought<'a, F: ModelFamily + ?Sized> {
     reading: &'a Reading<'a, F>,
@@ -91,6 +184,23 @@ struct Sought<'a, F: ModelFamily + ?Sized> {
 }
 
 impl<F: ModelFamily + ?Sized> Sought<'_, F> {
+    /// Whether so few effects leave nothing that no other look can do with less.
+    fn is_pair(&self) -> bool {
+        self.found.complete && self.found.added.len() <= PAIR
+    }
+
+    /// Whether it leaves nothing where the other does, or does so with fewer effects.
+    fn is_plainer_than(&self, other: &Self) -> bool {
+        let fewer = self.found.added.len() < other.found.added.len();
+        self.found.complete && (fewer || !other.found.complete)
+    }
+
+    /// The same with what was compared before.
+    fn after(mut self, decisions: Vec<Decision>) -> Self {
+        self.found.decisions.splice(0..0, decisions);
+        self
+    }
+
     /// The same where time ran out before the second look was over.
     fn cut(mut self) -> Self {
         self.found.stopped = true;
@@ -100,59 +210,34 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
 }
 
 /// One discovery, whatever the reading.
+#[derive(Clone, Copy)]
 struct Run<'a> {
     settings: &'a Settings<'a>,
     /// Terms of the base model and those that are left out.
     sets: (&'a [usize], &'a [usize]),
+    thresholds: Thresholds,
     started: Instant,
     stop: &'a (dyn Fn() -> bool + Sync),
     tell: Tell<'a>,
 }
 
-impl Run<'_> {
-    /// What is found in the reading that stands: on all of the recording, judged.
-    fn sought<'b, F: ModelFamily + ?Sized>(
-        &'b self,
-        here: &'b Reading<'b, F>,
-        there: Option<&'b (Reading<'b, F>, f64)>,
-    ) -> Sought<'b, F> {
-        let (reading, mut found) = self.found(here, there);
-        if reading.part.is_some() {
-            found.confirm(reading.family, &*reading.whole, &self.thresholds());
+impl<'a> Run<'a> {
+    /// A search in either reading that has looked at sets of one effect.
+    fn begun<F: ModelFamily + ?Sized>(
+        &self,
+        here: &'a Reading<'a, F>,
+        there: Option<&'a (Reading<'a, F>, f64)>,
+    ) -> Begun<'a, F> {
+        let there = there.map(|(there, nats)| (there, *nats));
+        Begun {
+            here: self.pursuit(here),
+            there: there.map(|(there, nats)| (self.pursuit(there), nats)),
+            thresholds: self.thresholds,
+            stop: self.stop,
         }
-        found.judge(reading.family, &*reading.whole, &self.thresholds());
-        Sought { reading, found }
     }
 
-    /// What is found in the reading that stands, as far as it was searched.
-    fn found<'b, F: ModelFamily + ?Sized>(
-        &'b self,
-        here: &'b Reading<'b, F>,
-        there: Option<&'b (Reading<'b, F>, f64)>,
-    ) -> (&'b Reading<'b, F>, Found) {
-        let (search, climb) = self.begun(here);
-        let Some((there, nats)) = there else { return (here, search.finish(climb)) };
-        let (second, second_climb) = self.begun(there);
-        let better = self.settings.thresholds.in_part(there.searched().share()).better;
-        if reading::nats(second_climb.top(), climb.top(), better) > *nats {
-            return (there, second.finish(second_climb));
-        }
-        let found = search.finish(climb);
-        let fitter = Fitter::new(there.family, there.searched()).stopped_by(self.stop);
-        if !(self.stop)() && reading::needs_less(&found, there.family, &fitter, better) {
-            let second = second.finish(second_climb);
-            if reading::nats(second.top(), found.top(), better) > 0.0 {
-                return (there, second);
-            }
-        }
-        (here, found)
-    }
-
-    /// A search that has looked at sets of one effect.
-    fn begun<'b, F: ModelFamily + ?Sized>(
-        &'b self,
-        reading: &'b Reading<'b, F>,
-    ) -> (Search<'b, F>, Climb) {
+    fn pursuit<F: ModelFamily + ?Sized>(&self, reading: &'a Reading<'a, F>) -> Pursuit<'a, F> {
         let (family, ahead) = (reading.family, reading.searched());
         let (base, excluded) = self.sets;
         let candidates: Vec<usize> = (0..family.terms().len())
@@ -163,7 +248,7 @@ impl Run<'_> {
                     && ![term, main].iter().any(|t| excluded.contains(t))
             })
             .collect();
-        let thresholds = self.thresholds().in_part(ahead.share());
+        let thresholds = self.thresholds.in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
         let base = if let Some(near) = &self.settings.start {
             search.base_near(near.clone())
@@ -174,12 +259,7 @@ impl Run<'_> {
             search.base(start.fit.model)
         };
         let climb = search.begin(base);
-        (search, climb)
-    }
-
-    fn thresholds(&self) -> Thresholds {
-        let thresholds = self.settings.thresholds;
-        Thresholds { most: thresholds.most.min(self.settings.most), ..thresholds }
+        Pursuit { reading, search, climb }
     }
 
     /// What was found, as a discovery.

@@ -24,6 +24,8 @@ const HOPELESS: f64 = 0.5;
 /// another one is.
 const FIRST: usize = 2;
 const COMPARABLE: f64 = 0.1;
+/// Share of what would bring a set that lags to the front which a candidate beside it must promise.
+const CATCHES_UP: f64 = 0.05;
 /// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
 const AGAIN: usize = 8;
 
@@ -33,9 +35,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let size = climb.nodes.len();
         let mut next: Vec<(Node, Difference)> = Vec::new();
         let mut least = None;
+        // The best child of the best set.
+        let mut front: Option<Node> = None;
         for (place, from) in climb.beam.iter().enumerate() {
-            let (children, screened) = self.expand(&climb.base, from, size, place == 0);
+            let lag = front.as_ref().map(|front| self.comparison.compare(from, front).nats);
+            let (children, screened) = self.expand(&climb.base, from, size, lag);
             if place == 0 {
+                let best = children.iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation));
+                front = Some(best.unwrap_or(from).clone());
                 let gains = children.iter().map(|child| self.comparison.compare(from, child));
                 least = gains.map(|gain| self.p_value(&screened, gain)).reduce(f64::min);
                 climb.ranking.push(self.ranked(from, &children, screened));
@@ -89,14 +96,16 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         climb.nodes.push(ranked);
     }
 
-    /// A set with one effect more: the most promising ones, fitted, each in the form that is best.
+    /// A set with one effect more: the most promising ones, fitted, each in the form that is best. A set that is not the
+    /// best has a `lag` behind the front, nats.
     fn expand(
         &mut self,
         base: &Node,
         from: &Node,
         size: usize,
-        first: bool,
+        lag: Option<f64>,
     ) -> (Vec<Node>, Screened) {
+        let first = lag.is_none();
         let open: Vec<usize> = self
             .candidates
             .iter()
@@ -125,6 +134,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         } else {
             0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
         };
+        let least = least.max(CATCHES_UP * lag.unwrap_or(0.0));
         let most = if size == 1 {
             self.thresholds.fitted
         } else {
