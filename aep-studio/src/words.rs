@@ -353,7 +353,7 @@ fn at(value: f64) -> String {
 }
 
 /// How to read the table of a confirmation.
-pub const CONFIRMATION: &str = "parameters as found, nothing fitted; 'gain anew': screened there with the \
+pub const CONFIRMATION: &str = "parameters as found, but for what belongs to a recording; 'gain anew': screened there with the \
     model below it identified anew, 'place' among the likely";
 
 /// Headings of the table of a confirmation.
@@ -391,7 +391,22 @@ pub fn confirmations(confirmed: &Confirmed) -> Vec<String> {
         let added = (!here.added.is_empty()).then(|| here.added.join(" + "))?;
         Some(format!("{added} is {said} by the other recordings."))
     };
-    confirmed.rungs.iter().filter_map(said).collect()
+    confirmed.rungs.iter().filter_map(said).chain(own(confirmed)).collect()
+}
+
+/// What belongs to a recording, as the last rung has it.
+fn own(confirmed: &Confirmed) -> Option<String> {
+    let last = confirmed.rungs.last().filter(|last| !last.own.is_empty())?;
+    let each = last.own.iter().map(|own| match own.name.as_str() {
+        "home" => format!("the position's zero lies {} further on", quantity(own.value, &own.unit)),
+        "shear" => format!("viscous friction is {} times as large", number(own.value)),
+        name => format!("{name} is {}", quantity(own.value, &own.unit)),
+    });
+    let each: Vec<String> = each.collect();
+    Some(format!(
+        "Fitted there, as it belongs to a recording and not to the axis: {}.",
+        each.join("; ")
+    ))
 }
 
 /// What surrogates say of false alarms: the sum, and every name.

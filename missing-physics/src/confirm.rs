@@ -1,13 +1,15 @@
 //! Whether what was found on one measurement holds on another one of the same plant.
 
+mod own;
+
 use crate::ahead::compare::Comparison;
 use crate::ahead::fit;
 use crate::ahead::node::Node;
 use crate::diagnosis;
 use crate::discover::suggest;
-use crate::family::{Ahead, ModelFamily};
+use crate::family::{Ahead, Fitted, ModelFamily, Own};
 use crate::fit::as_given;
-use crate::report::{Candidate, Confirmation, NamedError, Rung};
+use crate::report::{Candidate, Confirmation, NamedError, NamedValue, Rung};
 use crate::statistics::split::Split;
 use crate::task::{DiscoverError, Settings, model_of};
 
@@ -45,7 +47,8 @@ pub fn confirm<F: ModelFamily + ?Sized>(
     Ok(all)
 }
 
-/// Every rung by its prediction errors: as it was found, and with all parameters fitted here.
+/// Every rung by its prediction errors: as it was found but for what belongs to a recording, and with all parameters
+/// fitted here.
 fn one_ahead<F: ModelFamily + ?Sized>(
     family: &F,
     ahead: &dyn Ahead,
@@ -56,8 +59,16 @@ fn one_ahead<F: ModelFamily + ?Sized>(
     let mut all: Vec<Confirmation> = Vec::new();
     let mut below: Option<(Node, Node)> = None;
     for rung in ladder {
-        let mut here = as_found(family, rung)?;
         let model = model_of(family, rung)?;
+        let setting = fit::best_setting(ahead, &model);
+        let (model, own) = own::adapted(ahead, &model, setting);
+        let mut here = as_given_here(family, rung, model.clone());
+        let named = |(own, value): (Own, f64)| NamedValue {
+            name: own.name.to_owned(),
+            value,
+            unit: own.unit,
+        };
+        here.own = own.into_iter().map(named).collect();
         let setting = fit::best_setting(ahead, &model);
         let found = fit::evaluated(ahead, model.clone(), setting);
         let anew = fit::Fitter::new(family, ahead).refit(model, setting, STEPS);
@@ -82,7 +93,12 @@ fn as_found<F: ModelFamily + ?Sized>(
     family: &F,
     rung: &Rung,
 ) -> Result<Confirmation, DiscoverError> {
-    let fit = as_given(family, model_of(family, rung)?);
+    Ok(as_given_here(family, rung, model_of(family, rung)?))
+}
+
+/// The errors of a rung with the parameters of `model`.
+fn as_given_here<F: ModelFamily + ?Sized>(family: &F, rung: &Rung, model: Fitted) -> Confirmation {
+    let fit = as_given(family, model);
     let points = family.target().len();
     let split = Split::new(points, family.blocks());
     let fitted = split.fit(points).iter().filter(|fit| **fit).count() as f64 / points as f64;
@@ -91,7 +107,7 @@ fn as_found<F: ModelFamily + ?Sized>(
         (fitted * error.fit.powi(2) + (1.0 - fitted) * error.validation.powi(2)).sqrt()
     };
     let errors = diagnosis::errors(family, &fit, &split).into_iter();
-    Ok(Confirmation {
+    Confirmation {
         added: rung.added.clone(),
         effects: rung.effects.clone(),
         error: errors.map(|(name, error)| (name, whole(error))).collect(),
@@ -100,7 +116,8 @@ fn as_found<F: ModelFamily + ?Sized>(
         p_value: None,
         nats: None,
         place: None,
-    })
+        own: Vec::new(),
+    }
 }
 
 /// What `added` gains on a model of `effects` that is identified on these recordings.

@@ -56,6 +56,30 @@ fn what_was_hidden_is_named_with_its_size_and_holds_elsewhere() {
     }
 }
 
+/// After another homing, and with warmer oil, a ripple and a damping are still those of the axis.
+#[test]
+fn what_belongs_to_a_recording_does_not_speak_against_an_effect() {
+    let ripple = [("a_1", 1.6), ("b_1", 0.4), ("l", 0.005)];
+    let plant = |damping: f64| {
+        let damped = plain().with("viscous", &[("F_v", damping)]);
+        damped.and_then(|plant| plant.with("ripple", &ripple)).unwrap()
+    };
+    let (family, found) = searched(&plant(180.0));
+    assert_eq!(found.added, ["ripple"], "{}", found.summary);
+    let mut other = record(&plant(150.0));
+    let home = 1.7e-3;
+    for channel in other.channels.iter_mut().filter(|channel| channel.name == "position") {
+        channel.values.iter_mut().for_each(|x| *x += home);
+    }
+    let other = FrictionFamily::new(&other, &Options::default()).unwrap();
+    let again = confirm(&other, &found.ladder, &among(&family, &AMONG)).unwrap();
+    let last = again.last().unwrap();
+    assert_eq!(last.holds, Some(true), "{last:?}");
+    let own = |name: &str| last.own.iter().find(|own| own.name == name).unwrap().value;
+    assert!((own("home") + home).abs() < 5e-5, "{last:?}");
+    assert!((own("shear") * 180.0 / 150.0 - 1.0).abs() < 0.02, "{last:?}");
+}
+
 /// What each of them does hides the other one in part.
 #[test]
 fn two_strong_effects_that_hide_each_other_are_both_named() {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::own::{Own, turned};
 use super::{About, Effect, Parameter, Parameters, Periodic, Repeats, Sensor, Shown, Slot};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
@@ -67,6 +68,12 @@ impl Effect for Encoder {
     fn periodic(&self) -> Option<Periodic> {
         let (period, of) = ("p", Repeats::Sensor);
         Some(Periodic { period, of, ranked: true, columns: None, shortest: None })
+    }
+
+    fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {
+        let Own::Home(home) = own else { return None };
+        let (a, b) = turned((values[0], values[1]), 1, home, values[2]);
+        Some(vec![a, b, values[2]])
     }
 }
 

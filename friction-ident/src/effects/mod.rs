@@ -12,6 +12,7 @@ mod lanes;
 mod library;
 mod load;
 mod memory;
+mod own;
 mod past;
 pub mod search;
 mod sensor;
@@ -61,6 +62,7 @@ pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
 pub use memory::{Memory, Recalled, Taken};
+pub use own::Own;
 pub use past::Past;
 pub use search::{Periodic, Repeats, Trials};
 pub use sensor::{Sensor, Shown};
@@ -131,6 +133,11 @@ pub trait Effect: Sync + Send {
     /// How the law repeats itself along the stroke. Where an effect does not say, its law is asked: see
     /// [`search::periodic`].
     fn periodic(&self) -> Option<Periodic> {
+        None
+    }
+
+    /// The values of the same effect in a recording that differs so; nothing where it changes nothing.
+    fn in_recording(&self, _values: &[f64], _own: Own) -> Option<Vec<f64>> {
         None
     }
 

@@ -1,5 +1,6 @@
 //! Force ripple: periodic along the stroke, the same for both directions (screw, cogging).
 
+use super::own::{Own, turned};
 use super::{About, Effect, Motion, Parameter, Parameters, Periodic, Repeats, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
@@ -132,6 +133,18 @@ fn six_columns(wave: &[(f64, f64)]) -> Vec<Vec<f64>> {
     columns
 }
 
+/// The values with each pair of amplitudes turned: places of its sine and its cosine, and its harmonic.
+fn turned_by(values: &[f64], own: Own, pairs: &[(usize, usize, usize)]) -> Option<Vec<f64>> {
+    let Own::Home(home) = own else { return None };
+    let period = *values.last()?;
+    let mut moved = values.to_vec();
+    for (sine, cosine, harmonic) in pairs {
+        (moved[*sine], moved[*cosine]) =
+            turned((values[*sine], values[*cosine]), *harmonic, home, period);
+    }
+    Some(moved)
+}
+
 impl Effect for Ripple {
     fn about(&self) -> &'static About {
         &ABOUT
@@ -143,6 +156,10 @@ impl Effect for Ripple {
 
     fn periodic(&self) -> Option<Periodic> {
         Some(Periodic { ranked: true, columns: Some(two_columns), ..PERIODIC })
+    }
+
+    fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {
+        turned_by(values, own, &[(0, 1, 1), (2, 3, 2)])
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
@@ -159,6 +176,11 @@ impl Effect for Harmonics {
         Some(Periodic { ranked: false, columns: Some(six_columns), ..PERIODIC })
     }
 
+    fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {
+        let pairs: [_; COUNT] = std::array::from_fn(|k| (k, COUNT + k, k + 1));
+        turned_by(values, own, &pairs)
+    }
+
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
         six(p, m.position, out.force);
     }
@@ -171,6 +193,10 @@ impl Effect for Direction {
 
     fn periodic(&self) -> Option<Periodic> {
         Some(Periodic { ranked: true, columns: None, ..PERIODIC })
+    }
+
+    fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {
+        turned_by(values, own, &[(0, 1, 1), (2, 3, 1)])
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

@@ -1,5 +1,6 @@
 //! Viscous friction: the shear of a lubricant film.
 
+use super::own::Own;
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
@@ -21,6 +22,11 @@ static ABOUT: About = About {
 impl Effect for Viscous {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {
+        let Own::Shear(factor) = own else { return None };
+        Some(vec![factor * values[0]])
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

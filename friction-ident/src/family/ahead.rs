@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use aep_core::Scale;
-use missing_physics::family::{Ahead, Columns, Rival, Series, Trial, trials};
+use missing_physics::family::{Ahead, Columns, Own, Rival, Series, Trial, trials};
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
@@ -221,6 +221,14 @@ impl Ahead for View<'_> {
 
     fn missing_force(&self, model: &Fitted, setting: usize) -> Option<Series> {
         self.ahead.predictor.missing_force(&self.family.model(model).ok()?, setting)
+    }
+
+    fn own(&self, model: &Fitted) -> Vec<Own> {
+        self.family.own(model)
+    }
+
+    fn with_own(&self, model: &Fitted, values: &[f64]) -> Fitted {
+        self.family.with_own(model, values)
     }
 
     fn part(&self) -> Option<Box<dyn Ahead + '_>> {

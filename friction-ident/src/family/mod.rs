@@ -14,6 +14,7 @@ mod generic;
 mod given;
 mod hold;
 mod limits;
+mod own;
 mod plots;
 mod preparation;
 mod regimes;

@@ -18,6 +18,10 @@ use crate::task::{Event, Observer, Settings, Thresholds};
 const CUT: &str =
     "Time ran out before it was known whether other effects, which hide each other, do as much.";
 
+/// What is told where time ran out before the other reading was asked.
+const UNREAD: &str = "Time ran out before it was known whether fewer effects do where the force acts otherwise between \
+                      samples (held or changing evenly).";
+
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 ///
 /// What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
@@ -162,9 +166,14 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         if reading::nats(there.climb.top(), here.climb.top(), better) > nats {
             return (other, there.search.finish(there.climb));
         }
-        let found = here.search.finish(here.climb);
+        let mut found = here.search.finish(here.climb);
+        if stop() && !found.added.is_empty() {
+            found.stopped = true;
+            found.notes.push(UNREAD.to_owned());
+            return (here.reading, found);
+        }
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
-        if !stop() && reading::needs_less(&found, other.family, &fitter, better) {
+        if reading::needs_less(&found, other.family, &fitter, better) {
             let second = there.search.finish(there.climb);
             if reading::nats(second.top(), found.top(), better) > 0.0 {
                 return (other, second);

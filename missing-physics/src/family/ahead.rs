@@ -1,6 +1,7 @@
 //! A recording seen one sample ahead: the seam between the deciding part and a subject.
 
 use super::fitted::Fitted;
+use super::own::Own;
 use super::series::Series;
 
 /// A recording seen one sample ahead.
@@ -91,6 +92,16 @@ pub trait Ahead: Sync {
     /// The force beside a model that would make it follow the recording, by its prediction errors at a setting.
     fn missing_force(&self, _model: &Fitted, _setting: usize) -> Option<Series> {
         None
+    }
+
+    /// What of a model belongs to the recording.
+    fn own(&self, _model: &Fitted) -> Vec<Own> {
+        Vec::new()
+    }
+
+    /// The model with other values of what [`Ahead::own`] lists, in its order.
+    fn with_own(&self, model: &Fitted, _values: &[f64]) -> Fitted {
+        model.clone()
     }
 
     /// A few pieces of the recording, on which the trials of a term are ranked at a fraction of the cost; nothing where

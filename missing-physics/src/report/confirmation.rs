@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::NamedValue;
+
 /// A rung of a ladder on recordings that had no part in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Confirmation {
@@ -11,7 +13,7 @@ pub struct Confirmation {
     pub added: Vec<String>,
     /// Every effect of the rung.
     pub effects: Vec<String>,
-    /// Name of the error -> its size with the parameters as they were found, nothing fitted.
+    /// Name of the error -> its size with the parameters as they were found; nothing is fitted but [`Self::own`].
     pub error: BTreeMap<String, f64>,
     /// Whether the effect, as it was found, removes at least the least gain of the squared error here,
     /// and no other view contradicts.
@@ -21,9 +23,13 @@ pub struct Confirmation {
     pub gain: Option<f64>,
     /// Its p-value there.
     pub p_value: Option<f64>,
-    /// What it gains in log-likelihood of the prediction errors as it was found, nothing fitted, nats.
+    /// What it gains in log-likelihood of the prediction errors as it was found, nats; nothing is fitted but
+    /// [`Self::own`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub nats: Option<f64>,
+    /// What belongs to a recording and was fitted to these ones: where homing put the position's zero, how warm it was.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub own: Vec<NamedValue>,
     /// Its place there among the candidates that gain more than chance, from 1.
     pub place: Option<usize>,
 }
