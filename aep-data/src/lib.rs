@@ -44,6 +44,7 @@ mod pick;
 mod reference;
 mod role;
 mod save;
+mod series;
 mod several;
 mod sheet;
 mod table;
@@ -61,7 +62,8 @@ pub use mapping::{Mapping, Source, column_channel, hold_name, parse_hold, regres
 pub use part::{Part, part};
 pub use reference::{ReferencePath, read_reference};
 pub use role::{ALL as ROLES, Facts, Role};
-pub use save::{SaveError, save};
+pub use save::{SaveError, save, save_with};
+pub use series::{Format, Values, save_series};
 pub use several::read_all;
 pub use write::{to_csv, to_csv_rounded, to_toml};
 

@@ -256,6 +256,11 @@ impl DataArgs {
         words(&self.paths) + &self.mapping.words()
     }
 
+    /// The files.
+    pub fn paths(&self) -> &[PathBuf] {
+        &self.paths
+    }
+
     /// How the files are read.
     pub fn mapping(&self) -> &MappingArgs {
         &self.mapping

@@ -4,19 +4,21 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use aep_studio::words;
-use missing_physics::{Discovery, Thresholds, discover};
+use friction_ident::family::Decides;
+use missing_physics::{Discovery, Fitted, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
 use missing_physics::report::{Confirmed, Verdict};
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs};
+use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs, SeriesArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::stop::Watch;
+use crate::{outputs, series};
 
 /// Find out which physical effect a model of the drive lacks
 ///
@@ -55,6 +57,8 @@ pub struct Args {
     #[command(flatten)]
     results: OutputArgs,
     #[command(flatten)]
+    series: SeriesArgs,
+    #[command(flatten)]
     run: RunArgs,
     #[command(flatten)]
     mapping: MappingArgs,
@@ -83,12 +87,24 @@ Examples:
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
   aep discover run.csv --model-force tau_model           what your own model lacks
   aep discover run.csv --explain                         everything that was compared, and why
+  aep discover run.csv --series points.parquet           prediction and residual of every rung, sample by sample
   aep discover run.csv --surrogates 20                   how often it would name what is not there
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
   aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let inputs: Vec<PathBuf> = args.data.iter().chain(&args.validate).cloned().collect();
+    outputs::check(
+        &inputs,
+        &[
+            ("--output", args.output.as_deref()),
+            ("--json", args.results.json.as_deref()),
+            ("--html", args.results.html.as_deref()),
+            ("--series", args.series.path()),
+            ("--experiment", args.experiment.as_deref()),
+        ],
+    )?;
     let loaded = match args.data.as_slice() {
         [] => crate::example::load()?,
         paths => args.mapping.read_all(paths)?,
@@ -149,6 +165,14 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         proposal = propose(&family, last, rivals, path, args.run.seed)?;
         more.append(&mut proposal.more);
     }
+    let mut points = String::new();
+    if let Some(path) = args.series.path() {
+        progress.say("predicting every sample");
+        let rungs: Result<Vec<(String, Fitted)>, Failure> = (discovery.ladder.iter().enumerate())
+            .map(|(k, rung)| Ok((series::rung(k, &rung.added), model_of(&family, rung)?)))
+            .collect();
+        points = series::save(path, (&loaded.recording, &family), &rungs?, Decides::Prediction)?;
+    }
     drop(progress);
     let report = Report {
         kind: Kind::Discovery,
@@ -159,6 +183,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         more,
     };
     let mut files = report.save(&args.results)?;
+    files += &points;
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, path)?;
     }

@@ -11,3 +11,4 @@ mod manual;
 mod optimizers;
 mod own_model;
 mod plant;
+mod series;

@@ -15,6 +15,7 @@ mod given;
 mod hold;
 mod limits;
 mod plots;
+mod points;
 mod preparation;
 mod regimes;
 mod surrogates;
@@ -34,6 +35,7 @@ use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regi
 use rayon::prelude::*;
 
 pub use hold::HoldChoice;
+pub use points::{Decides, ModelPoints, Points};
 pub use preparation::{PreparationError, Prepared};
 
 use crate::axis::Axis;
