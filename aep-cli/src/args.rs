@@ -15,5 +15,5 @@ pub use effects::{EffectNames, add_files, known, library};
 pub use horizon::{Compared, TimeArgs, TimeTask};
 pub use known::KnownArgs;
 pub use run::{LimitArgs, OutputArgs, RunArgs};
-pub use series::SeriesArgs;
+pub use series::{SeriesArgs, axis_path};
 pub use shell::flag;

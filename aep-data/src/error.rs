@@ -184,6 +184,20 @@ pub enum Problem {
         /// The one that was probably meant.
         nearest: Option<String>,
     },
+    /// No groups of columns that could be axes.
+    #[error("no axes found: no force and position of the same number or joint name; the file has: {}", listed(.present))]
+    NoAxes {
+        /// The names there are.
+        present: Vec<String>,
+    },
+    /// An axis that is not there.
+    #[error("there is no axis '{name}'; there are: {}", .present.join(", "))]
+    NoAxis {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        present: Vec<String>,
+    },
     /// A variable that is needed is not in the `.mat` file.
     #[error("no variable for the {role}{}; the file has: {}", wanted(.column.as_deref()), listed(.present))]
     MissingVariable {
@@ -379,6 +393,11 @@ impl Problem {
                 format!("mend it at the mark; 'aep effects --formula' lists all functions\n{shown}")
             }
             Self::Damaged { .. } => "write it once more, or as CSV with time_s,force_N,position_m".to_owned(),
+            Self::NoAxes { .. } => format!(
+                "looked for names such as torque_1 and position_1, tau_0 and q_0, elbow_torque and elbow_angle; say others \
+                 with {{}} in place of the axis: --force 'u_{{}}' --position 'enc_{{}}', or with [axes.NAME] in {toml}"
+            ),
+            Self::NoAxis { .. } => "choose some of these, or --axes all".to_owned(),
             Self::Nothing { .. } => "check the formula, or leave it out".to_owned(),
             Self::NotFinite { .. } => {
                 "keep it within its domain, e.g. sqrt(max(0, x)) or log(max(1e-9, x)), or leave the row out".to_owned()

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use aep_data::Format;
+use aep_data::{Format, PLACE};
 
 /// Where results go point by point.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -14,10 +14,22 @@ pub struct SeriesArgs {
 }
 
 impl SeriesArgs {
+    /// The same of one axis of several, whose name takes the place of `{}`.
+    pub fn of_axis(&self, name: &str) -> Option<PathBuf> {
+        self.path().map(|path| axis_path(path, name))
+    }
+
     /// The file, where one was asked for.
     pub fn path(&self) -> Option<&Path> {
         self.series.as_deref()
     }
+}
+
+/// The file of an axis: its name in place of `{}`.
+pub fn axis_path(path: &Path, name: &str) -> PathBuf {
+    let safe = |c: char| if matches!(c, '/' | '\\') { '-' } else { c };
+    let name: String = name.chars().map(safe).collect();
+    PathBuf::from(path.to_string_lossy().replace(PLACE, &name))
 }
 
 fn path(text: &str) -> Result<PathBuf, String> {

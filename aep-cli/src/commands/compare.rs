@@ -7,6 +7,7 @@ use friction_ident::family::{Decides, FrictionFamily};
 use missing_physics::{Fitted, Thresholds, diagnosis};
 use missing_physics::fit::Fit;
 use missing_physics::measurement::check::check;
+use missing_physics::report::Combinations;
 use missing_physics::report::View;
 
 use crate::app::Global;
@@ -96,6 +97,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         loaded: &loaded,
         check: &data,
         thresholds: Thresholds::default(),
+        together: Combinations::default(),
         more: vec![("models", in_json(&paths, &views))],
     };
     let mut files = report.save(&args.results)?;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use friction_ident::family::Decides;
 use missing_physics::{Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
+use missing_physics::report::Combinations;
 
 use crate::steps;
 use crate::app::Global;
@@ -94,7 +95,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: Combinations::default(), more: Vec::new() };
     let mut files = report.save(&args.results)?;
     output::save(&args.output, &(extended.to_json()? + "\n"))?;
     files += &written("model", &args.output);

@@ -130,10 +130,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let rung = diagnosis::rung(&family, &fit, &[]);
     let model = steps::model(&family, &rung)?;
     let discovery = diagnosis::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, &|| watch.is_over());
+    let friction = family.friction(&fit.model, Decides::FittedForce);
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: friction.clone(), more: Vec::new() };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         output::save(path, &(model.to_json()? + "\n"))?;
@@ -149,6 +150,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let title = format!("{} by {} ({evaluations} evaluations)", effects.join(" + "), args.algorithm);
     let text = heading(&title)
         + &output::parameters(&rung)
+        + &output::together(&friction)
         + &heading("Errors")
         + &output::ladder(&discovery, "the model")
         + &output::notes(&discovery)

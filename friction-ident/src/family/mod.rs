@@ -9,6 +9,7 @@ mod coordinates;
 pub mod experiment;
 mod filter;
 mod forms;
+mod friction;
 mod full_rate;
 mod generic;
 mod given;
