@@ -82,6 +82,9 @@ impl Report<'_> {
         }
         json["recording"] = json!(self.loaded.recording.name());
         json["data"] = serde_json::to_value(self.check).map_err(broken)?;
+        let left_out = &self.loaded.left_out;
+        json["data"]["rows_left_out"] =
+            json!({ "without_number": left_out.missing, "time_repeated": left_out.repeated });
         Ok(json)
     }
 }

@@ -172,6 +172,34 @@ pub enum Problem {
         /// What stands there.
         value: String,
     },
+    /// So many rows without a number that the rest is no recording.
+    #[error(
+        "{missing} of {rows} rows have no number in a column that is used, the first one here; up to a quarter are left out"
+    )]
+    TooManyMissing {
+        /// Rows without a number.
+        missing: usize,
+        /// All rows.
+        rows: usize,
+    },
+    /// So many rows with the time of the row before that the times say nothing.
+    #[error(
+        "{repeated} of {rows} rows have the time of the row before; up to a quarter are left out"
+    )]
+    TooManyRepeated {
+        /// Rows with the time of the row before.
+        repeated: usize,
+        /// All rows.
+        rows: usize,
+    },
+    /// A velocity, but no position.
+    #[error(
+        "there is a velocity ('{column}'), but no position: models are judged by the positions that they predict"
+    )]
+    VelocityOnly {
+        /// The column of the velocity.
+        column: String,
+    },
     /// A column that is needed is not there.
     #[error("no column for the {role}{}; the file has: {}", wanted(.column.as_deref()), listed(.present))]
     MissingColumn {
@@ -393,6 +421,17 @@ impl Problem {
                 format!("mend it at the mark; 'aep effects --formula' lists all functions\n{shown}")
             }
             Self::Damaged { .. } => "write it once more, or as CSV with time_s,force_N,position_m".to_owned(),
+            Self::TooManyMissing { .. } => {
+                "fill the column, cut the file (--from, --to), or leave the column out".to_owned()
+            }
+            Self::TooManyRepeated { .. } => {
+                "write the time with more digits, or say the sampling interval: --interval 0.001".to_owned()
+            }
+            Self::VelocityOnly { .. } => {
+                "record the position, too: the integral of a measured velocity drifts by far more than an encoder errs, which \
+                 would be taken for missing physics"
+                    .to_owned()
+            }
             Self::NoAxes { .. } => format!(
                 "looked for names such as torque_1 and position_1, tau_0 and q_0, elbow_torque and elbow_angle; say others \
                  with {{}} in place of the axis: --force 'u_{{}}' --position 'enc_{{}}', or with [axes.NAME] in {toml}"

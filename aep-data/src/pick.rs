@@ -88,6 +88,9 @@ fn no_column(role: Role, source: &Source, table: &dyn Table, path: &Path) -> Res
     }
     let name = role.facts().name;
     let names = table.names();
+    if let Some(column) = recognise(Role::Velocity, &names).filter(|_| role == Role::Position) {
+        return Err(DataError::new(path, Problem::VelocityOnly { column: column.clone() }));
+    }
     let Some((column, unit)) = unit_unknown(role, &names) else {
         return Err(DataError::new(path, table.missing(name, None)));
     };

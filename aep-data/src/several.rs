@@ -36,6 +36,8 @@ pub(crate) fn join<'a>(
         all.recording = joined(&all.recording, &next.recording)
             .map_err(|error| DataError::new(path, Problem::Recording(error)))?;
         all.switched_off += next.switched_off;
+        all.left_out.missing += next.left_out.missing;
+        all.left_out.repeated += next.left_out.repeated;
         all.unused.retain(|name| next.unused.contains(name));
     }
     let present = |name: &str| name == "time" || all.recording.channel(name).is_some();

@@ -118,3 +118,23 @@ fn rounded_numbers_keep_the_digits_asked_for() {
     assert_eq!(text.lines().nth(1), Some("0,0,0"));
     assert_eq!(text.lines().nth(4), Some("0.003,37.037,-0.000003"));
 }
+
+#[test]
+fn time_stamps_are_read_to_the_nanosecond_from_the_first_one_on() {
+    let mut text = String::from("Recorder: X\nwhen;force;position\n;N;mm\n");
+    for k in 0..40 {
+        text += &format!("2026-03-01T23:59:59,{:09};{};{}\n", 990_000_000 + 250_001 * k, k, 2 * k);
+    }
+    let mapping = Mapping { time: Source::column("when"), ..Mapping::default() };
+    let loaded = parse(Path::new("run.csv"), text.into_bytes(), &mapping).unwrap();
+    let time = loaded.recording.time();
+    assert_eq!(time[0], 0.0);
+    assert!((time[39] - 39.0 * 250_001e-9).abs() < 1e-15, "{}", time[39]);
+    // Whatever unit the name says.
+    let mut text = String::from("time_ms,force_N,position_m\n");
+    for k in 0..40 {
+        text += &format!("2026-03-01 10:00:{:02}Z,1,2\n", k);
+    }
+    let loaded = parse(Path::new("run.csv"), text.into_bytes(), &Mapping::default()).unwrap();
+    assert!((loaded.recording.time()[39] - 39.0).abs() < 1e-12);
+}

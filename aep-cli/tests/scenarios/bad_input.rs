@@ -32,11 +32,11 @@ fn an_ampere_is_no_newton_without_a_gain() {
 }
 
 #[test]
-fn nan_is_named_with_line_and_column() {
+fn text_in_place_of_a_number_is_named_with_line_and_column() {
     let desk = Desk::new();
-    desk.write("run.csv", recording(7, "0.05,NaN,0.1"));
+    desk.write("run.csv", recording(7, "0.05,1.2.3,0.1"));
     desk.aep("discover run.csv").refused(&[
-        "error: 'NaN' is not a number",
+        "error: '1.2.3' is not a number",
         "  run.csv, line 7, column 'force_N'",
         "hint: ",
     ]);
