@@ -5,7 +5,7 @@ use std::path::Path;
 use aep_data::{Format, Values, save_series};
 use friction_ident::Axis;
 use friction_ident::family::{Decides, FrictionFamily};
-use missing_physics::{Fitted, Recording};
+use missing_physics::{Fitted, ModelFamily, Recording};
 
 use crate::failure::Failure;
 use crate::output::written;
@@ -23,9 +23,11 @@ pub fn save(
     let (Ok(position), Ok(force)) = (position, force) else {
         return Err(Failure::failed("the recording has neither force nor position"));
     };
-    let (force_name, position_name) = match family.axis() {
-        Axis::Linear => ("force_N", "position_m"),
-        Axis::Rotary => ("torque_Nm", "angle_rad"),
+    let quantity = family.quantity();
+    let force_name = format!("{}_{}", quantity.name, quantity.unit);
+    let position_name = match family.axis() {
+        Axis::Linear => "position_m",
+        Axis::Rotary => "angle_rad",
     };
     let residuals = |measured: &[f64], predicted: &[f64]| -> Vec<f64> {
         measured.iter().zip(predicted).map(|(measured, predicted)| measured - predicted).collect()
@@ -45,7 +47,7 @@ pub fn save(
         ("took_part".to_owned(), Values::Whole(took_part)),
         ("why_not".to_owned(), Values::Texts(why_not)),
         (position_name.to_owned(), Values::Numbers(position)),
-        (force_name.to_owned(), Values::Numbers(force)),
+        (force_name.clone(), Values::Numbers(force)),
         (format!("compared_{force_name}"), Values::Numbers(&points.compared_force)),
     ];
     for (((name, _), model), [ahead, along]) in models.iter().zip(&points.models).zip(&left) {

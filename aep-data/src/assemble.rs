@@ -11,7 +11,7 @@ use crate::expression::Expression;
 use crate::kept::{Kept, LeftOut, MOST, repeated};
 use crate::layouts::Layout;
 use crate::mapping::{Mapping, column_channel, regressor_channel};
-use crate::pick::Pick;
+use crate::pick::{Pick, Said};
 use crate::role::{self, Role};
 use crate::table::Table;
 
@@ -61,10 +61,11 @@ pub(crate) fn assemble(
     let mut picks = picks(path, table, &mapping)?;
     drop_sparse(&mut picks, table, &mapping)?;
     let rotary = is_rotary(&picks).map_err(|problem| DataError::new(path, problem))?;
+    same_effort(&picks).map_err(|problem| DataError::new(path, problem))?;
     let extras = extras(path, table, &mapping)?;
     let (kept, left_out) = kept(path, table, &picks, &extras)?;
     let (recording, switched_off) = recording(path, &kept, &mapping, (&picks, &extras), rotary)?;
-    let origins = picks.iter().map(|pick| origin(pick, rotary)).collect();
+    let origins = picks.iter().map(|pick| origin(pick, &picks, rotary)).collect();
     let used = |name: &String| {
         let beside = extras.iter().flat_map(|(_, expression)| expression.columns());
         picks.iter().flat_map(Pick::columns).chain(beside).any(|used| used == name)
@@ -172,13 +173,39 @@ fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>,
     Ok(picks)
 }
 
+/// Unit of a channel: that of the axis, or V or A where the force is one.
+fn unit_of(pick: &Pick, picks: &[Pick], rotary: bool) -> &'static str {
+    let force = picks.iter().find(|other| other.role == Role::Force);
+    let electrical = match pick.role {
+        Role::Force => pick.electrical(),
+        // What says no unit of its own is in that of the force.
+        Role::ModelForce => force.and_then(Pick::electrical),
+        _ => None,
+    };
+    electrical.unwrap_or_else(|| unit(pick.role, rotary))
+}
+
+/// Refuses a model's force in another kind of unit than the force's.
+fn same_effort(picks: &[Pick]) -> Result<(), Problem> {
+    let of = |role: Role| picks.iter().find(|pick| pick.role == role);
+    let (Some(force), Some(model)) = (of(Role::Force), of(Role::ModelForce)) else { return Ok(()) };
+    let (there, here) = (force.electrical(), model.electrical());
+    let says_nothing = matches!(model.said, Said::Nothing | Said::Rotary) && here.is_none();
+    if there == here || (there.is_some() && says_nothing) {
+        return Ok(());
+    }
+    let name = |unit: Option<&'static str>| unit.unwrap_or("N or Nm");
+    let unit = name(here).to_owned();
+    Err(Problem::WrongUnit { role: "model_force", unit, known: vec![name(there)] })
+}
+
 fn unit(role: Role, rotary: bool) -> &'static str {
     let facts = role.facts();
     if rotary { facts.rotary.si() } else { facts.linear.si() }
 }
 
-fn origin(pick: &Pick, rotary: bool) -> Origin {
-    let unit = unit(pick.role, rotary);
+fn origin(pick: &Pick, picks: &[Pick], rotary: bool) -> Origin {
+    let unit = unit_of(pick, picks, rotary);
     Origin { channel: pick.role.facts().name, column: pick.expression.text.clone(), unit }
 }
 
@@ -214,7 +241,7 @@ fn recording(
             Role::Segment => segment = Some(whole(&values, pick, table, path)?),
             Role::Enabled => enabled = Some(values),
             role => {
-                let unit = unit(role, rotary);
+                let unit = unit_of(pick, picks, rotary);
                 check_size(&values, unit, pick, table, path)?;
                 channels.push(Channel::new(role.facts().name, unit, values));
             }

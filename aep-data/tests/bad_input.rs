@@ -141,9 +141,12 @@ fn units_that_are_unknown_wrong_or_need_a_gain() {
     assert_says(&error, &["'furlong'", "mN", "--force-unit"]);
     let error = csv(&with_line(1, "time_s,force_KN,position_m"));
     assert_says(&error, &["'KN'", "did you mean kN?", "--force force_KN --force-unit kN"]);
-    let volts = Mapping { force: Source::column("u_V"), ..Mapping::default() };
-    let error = mapped(&with_line(1, "time_s,u_V,position_m"), &volts);
-    assert_says(&error, &["in V", "--force-gain"]);
+    let counts = Mapping { force: Source::column("u_counts"), ..Mapping::default() };
+    let error = mapped(&with_line(1, "time_s,u_counts,position_m"), &counts);
+    assert_says(&error, &["in counts", "--force-gain"]);
+    let volts = Mapping { position: Source::column("u_V"), ..Mapping::default() };
+    let error = mapped(&with_line(1, "time_s,force_N,u_V"), &volts);
+    assert_says(&error, &["in V", "--position-gain"]);
     let metres = Mapping { force: Source::column("position_m"), ..Mapping::default() };
     let error = mapped(&with_line(1, "time_s,u_V,position_m"), &metres);
     assert_says(&error, &["'m' is no unit of a force"]);

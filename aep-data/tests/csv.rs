@@ -138,3 +138,40 @@ fn time_stamps_are_read_to_the_nanosecond_from_the_first_one_on() {
     let loaded = parse(Path::new("run.csv"), text.into_bytes(), &Mapping::default()).unwrap();
     assert!((loaded.recording.time()[39] - 39.0).abs() < 1e-12);
 }
+
+#[test]
+fn volts_and_amperes_without_a_gain_stay_what_they_are() {
+    let text = |name: &str| {
+        let mut text = format!("time_s,{name},angle_rad,model\n");
+        (0..40).for_each(|k| text += &format!("{},500,{},400\n", 0.001 * f64::from(k), k));
+        text
+    };
+    let force = |column: &str| Mapping { force: Source::column(column), ..Mapping::default() };
+    for (column, unit, value) in [("u_mV", "V", 0.5), ("i_A", "A", 500.0), ("i [mA]", "A", 0.5)] {
+        let loaded = read(&text(column), &force(column));
+        let channel = loaded.recording.channel("force").unwrap();
+        assert_eq!((channel.unit.as_str(), channel.values[0]), (unit, value));
+        assert_eq!(loaded.origins[1].unit, unit);
+        assert!(to_csv(&loaded.recording).starts_with(&format!("time_s,force_{unit},")));
+    }
+    // A gain makes a torque of it, and so does nothing else.
+    let gain = Mapping {
+        force: Source { column: Some("u_V".into()), gain: Some(2.0), ..Source::default() },
+        ..Mapping::default()
+    };
+    assert_eq!(read(&text("u_V"), &gain).recording.channel("force").unwrap().unit, "Nm");
+    // The force of a model is in the unit of the force.
+    let both = |unit: Option<&str>| Mapping {
+        model_force: Source {
+            column: Some("model".into()),
+            unit: unit.map(str::to_owned),
+            gain: None,
+        },
+        ..force("u_V")
+    };
+    let loaded = read(&text("u_V"), &both(None));
+    assert_eq!(loaded.recording.channel("model_force").unwrap().unit, "V");
+    let bytes = text("u_V").into_bytes();
+    let error = parse(Path::new("run.csv"), bytes, &both(Some("Nm"))).unwrap_err();
+    assert!(error.to_string().contains("no unit of a model_force"), "{error}");
+}

@@ -11,7 +11,7 @@ fn friction_is_told_as_level_and_viscosity_where_its_parameters_are_not_determin
     assert!(run.done().contains("friction level forwards"), "{}", run.out);
     let truth = &desk.json("c/truth.json")["model"]["effects"];
     let of = |effect: &str, parameter: &str| {
-        let found = truth.as_array().unwrap().iter().find(|e| e["name"] == effect);
+        let found = truth.as_array().unwrap().iter().find(|e| e["effect"] == effect);
         found.map_or(0.0, |effect| effect["parameters"][parameter].as_f64().unwrap())
     };
     let json = desk.json("i.json");

@@ -134,7 +134,7 @@ impl FrictionFamily {
                 value,
                 low: value - reach,
                 high: value + reach,
-                unit: self.axis.unit(*quantity).to_owned(),
+                unit: self.effort.unit(self.axis, *quantity).to_owned(),
                 identifiable: reach * as_force < DETERMINED * size,
             };
             Combination { name: (*name).to_owned(), title: (*title).to_owned(), estimate }

@@ -39,7 +39,7 @@ pub use hold::HoldChoice;
 pub use points::{Decides, ModelPoints, Points};
 pub use preparation::{PreparationError, Prepared};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Effort};
 use crate::driven::{MeasuredMotion, columns_along, force_along};
 use crate::effects::beside::{BESIDE, MODEL_FORCE};
 use crate::effects::free::{self, RIVALS, Span};
@@ -67,6 +67,7 @@ pub struct FrictionFamily {
     recording: Recording,
     prepared: Prepared,
     axis: Axis,
+    effort: Effort,
     library: Library,
     known: Known,
     effects: Vec<&'static dyn Effect>,
@@ -121,6 +122,8 @@ impl FrictionFamily {
         };
         let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
         let axis = if rotary { Axis::Rotary } else { Axis::Linear };
+        let effort =
+            recording.channel("force").map_or(Effort::Si, |channel| Effort::of(&channel.unit));
         let stroke = prepared
             .position
             .iter()
@@ -133,18 +136,19 @@ impl FrictionFamily {
             .chain(RIVALS.iter().map(|free| free.effect))
             .map(|effect| effect.bound(recording).unwrap_or(effect))
             .collect();
-        let limits = limits::Limits::of(&prepared, axis, stroke);
+        let limits = limits::Limits::of(&prepared, (axis, effort), stroke);
         let mut terms = vec![if given { limits.timing() } else { limits.mass() }];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
         if given {
             given::as_deviations(&mut terms);
         }
         options.known.apply(&mut terms)?;
-        let coordinates = coordinates::coordinates(&prepared, axis, recording);
+        let coordinates = coordinates::coordinates(&prepared, (axis, effort), recording);
         let regimes = regimes::regimes(&prepared, stroke);
         let mut family = Self {
             recording: recording.clone(),
             axis,
+            effort,
             library: options.library.clone(),
             periodic: effects.iter().map(|effect| search::periodic(*effect)).collect(),
             known: options.known.clone(),
@@ -198,6 +202,11 @@ impl FrictionFamily {
         self.axis
     }
 
+    /// What its forces are measured in.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
     /// The prepared motion and force.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
@@ -230,7 +239,8 @@ impl FrictionFamily {
         let mut model = match &self.given {
             Some(_) => Model::beside(self.axis, timing)?,
             None => Model::new(self.axis, mass)?,
-        };
+        }
+        .with_effort(self.effort);
         for (effect, values) in effects {
             model = model.with_effect(effect)?;
             let mut values = values.iter();
@@ -472,10 +482,13 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn quantity(&self) -> Quantity {
-        match self.axis {
-            Axis::Linear => Quantity { name: "force".into(), unit: "N".into() },
-            Axis::Rotary => Quantity { name: "torque".into(), unit: "Nm".into() },
-        }
+        let (name, unit) = match (self.effort, self.axis) {
+            (Effort::Volt, _) => ("voltage", "V"),
+            (Effort::Ampere, _) => ("current", "A"),
+            (Effort::Si, Axis::Linear) => ("force", "N"),
+            (Effort::Si, Axis::Rotary) => ("torque", "Nm"),
+        };
+        Quantity { name: name.into(), unit: unit.into() }
     }
 
     fn time(&self) -> &[f64] {
@@ -668,7 +681,8 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn generic_term(&self, coordinate: &Coordinate, shape: &Generic) -> Option<String> {
-        generic::effect(coordinate, shape, &self.quantity().unit)
+        // Files of effects are in N or N m; what is fitted then has the unit of the effort.
+        generic::effect(coordinate, shape, self.axis.unit(crate::axis::Quantity::Force))
     }
 
     fn plots(&self, base: &Fitted, last: &Fitted) -> Vec<Plot> {
