@@ -269,9 +269,6 @@ pub enum Problem {
     /// Ends in `.mat`, is none.
     #[error("this is not a MATLAB v5 file")]
     NotMat,
-    /// A `.mat` of version 7.3.
-    #[error("this MATLAB file is of version 7.3 (HDF5), which is not read")]
-    Hdf5,
     /// A `.mat` that ends in the middle or holds nonsense.
     #[error("the MATLAB file is damaged: {what}")]
     DamagedMat {
@@ -467,7 +464,7 @@ impl Problem {
             }
             Self::NotAVector { .. } => "save one column of it as a variable of its own".to_owned(),
             Self::Length { .. } => "all vectors must have one value a sample".to_owned(),
-            Self::NotMat | Self::Hdf5 | Self::DamagedMat { .. } => {
+            Self::NotMat | Self::DamagedMat { .. } => {
                 "in MATLAB: load it, then save('data.mat', '-v7'); or write a CSV with \
                  time_s,force_N,position_m"
                     .to_owned()

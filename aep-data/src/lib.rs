@@ -1,4 +1,4 @@
-//! Recordings from files: CSV, MATLAB v5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
+//! Recordings from files: CSV, MATLAB, HDF5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
 //! mend them.
 //!
 //! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised
@@ -32,6 +32,7 @@ mod csv_table;
 mod enabled;
 mod error;
 mod expression;
+mod hdf5_table;
 mod header;
 mod kept;
 mod layouts;
@@ -136,7 +137,7 @@ fn table(path: &Path, bytes: Vec<u8>) -> Result<Box<dyn Table>, DataError> {
         return Err(DataError::new(path, Problem::Empty));
     }
     if mat_index::is_hdf5(&bytes) {
-        return Err(DataError::new(path, Problem::Hdf5));
+        return Ok(Box::new(hdf5_table::Hdf5Table::parse(path, bytes)?));
     }
     if mat_index::is_mat5(&bytes) {
         return Ok(Box::new(MatTable::parse(path, bytes)?));
@@ -167,7 +168,7 @@ fn unreadable(error: &std::io::Error) -> Problem {
 }
 
 /// Endings of files that are read.
-const FORMATS: [&str; 5] = ["csv", "mat", "parquet", "npz", "xlsx"];
+const FORMATS: [&str; 6] = ["csv", "mat", "parquet", "npz", "xlsx", "h5"];
 
 /// The files of a folder that could be recordings, sorted.
 fn data_files(folder: &Path) -> Vec<String> {
