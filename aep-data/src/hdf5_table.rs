@@ -53,7 +53,9 @@ fn without_common_group(entries: &mut [Entry]) {
     };
     let prefix = format!("{first}.");
     if entries.iter().all(|entry| entry.name.starts_with(&prefix)) {
-        entries.iter_mut().for_each(|entry| entry.name = entry.name[prefix.len()..].to_owned());
+        for entry in entries {
+            entry.name = entry.name[prefix.len()..].to_owned();
+        }
     }
 }
 

@@ -22,7 +22,7 @@ pub struct LeftOut {
 pub(crate) struct Kept<'a> {
     table: &'a dyn Table,
     rows: usize,
-    kept: Vec<usize>,
+    left: Vec<usize>,
 }
 
 impl<'a> Kept<'a> {
@@ -61,24 +61,24 @@ impl<'a> Kept<'a> {
                 .at_sample(row, table.line(row))
                 .in_column(column));
         }
-        Ok(Self { table, rows, kept: left })
+        Ok(Self { table, rows, left })
     }
 
     /// Number of rows that are left.
     pub fn len(&self) -> usize {
-        self.kept.len()
+        self.left.len()
     }
 
     /// Number of rows that were left out.
     pub fn left_out(&self) -> usize {
-        self.rows - self.kept.len()
+        self.rows - self.left.len()
     }
 
     /// The same without these of its rows.
     pub fn without(mut self, rows: &[usize]) -> Self {
         let mut out = rows.iter().copied().peekable();
         let mut at = 0;
-        self.kept.retain(|_| {
+        self.left.retain(|_| {
             let keeps = out.next_if_eq(&at).is_none();
             at += 1;
             keeps
@@ -95,17 +95,17 @@ impl Table for Kept<'_> {
     fn column(&self, name: &str) -> Result<Column, DataError> {
         let mut column = self.table.column(name)?;
         // Columns of another length are told where they are used.
-        if column.values.len() == self.rows && self.rows != self.kept.len() {
-            column.values = self.kept.iter().map(|k| column.values[*k]).collect();
+        if column.values.len() == self.rows && self.rows != self.left.len() {
+            column.values = self.left.iter().map(|k| column.values[*k]).collect();
             if let Some(bad) = &mut column.bad {
-                bad.sample = self.kept.partition_point(|k| *k < bad.sample);
+                bad.sample = self.left.partition_point(|k| *k < bad.sample);
             }
         }
         Ok(column)
     }
 
     fn line(&self, sample: usize) -> Option<u64> {
-        self.table.line(self.kept.get(sample).copied().unwrap_or(sample))
+        self.table.line(self.left.get(sample).copied().unwrap_or(sample))
     }
 
     fn missing(&self, role: &str, column: Option<&str>) -> Problem {

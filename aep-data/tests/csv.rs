@@ -121,20 +121,20 @@ fn rounded_numbers_keep_the_digits_asked_for() {
 
 #[test]
 fn time_stamps_are_read_to_the_nanosecond_from_the_first_one_on() {
-    let mut text = String::from("Recorder: X\nwhen;force;position\n;N;mm\n");
-    for k in 0..40 {
-        text += &format!("2026-03-01T23:59:59,{:09};{};{}\n", 990_000_000 + 250_001 * k, k, 2 * k);
-    }
+    let row = |k: u32| {
+        let nanoseconds = 990_000_000 + 250_001 * k;
+        format!("2026-03-01T23:59:59,{nanoseconds:09};{k};{}\n", 2 * k)
+    };
+    let text = "Recorder: X\nwhen;force;position\n;N;mm\n".to_owned();
+    let text = text + &(0..40).map(row).collect::<Vec<String>>().concat();
     let mapping = Mapping { time: Source::column("when"), ..Mapping::default() };
     let loaded = parse(Path::new("run.csv"), text.into_bytes(), &mapping).unwrap();
     let time = loaded.recording.time();
     assert_eq!(time[0], 0.0);
     assert!((time[39] - 39.0 * 250_001e-9).abs() < 1e-15, "{}", time[39]);
     // Whatever unit the name says.
-    let mut text = String::from("time_ms,force_N,position_m\n");
-    for k in 0..40 {
-        text += &format!("2026-03-01 10:00:{:02}Z,1,2\n", k);
-    }
+    let rows = (0..40).map(|k| format!("2026-03-01 10:00:{k:02}Z,1,2\n"));
+    let text = "time_ms,force_N,position_m\n".to_owned() + &rows.collect::<Vec<String>>().concat();
     let loaded = parse(Path::new("run.csv"), text.into_bytes(), &Mapping::default()).unwrap();
     assert!((loaded.recording.time()[39] - 39.0).abs() < 1e-12);
 }
@@ -142,9 +142,8 @@ fn time_stamps_are_read_to_the_nanosecond_from_the_first_one_on() {
 #[test]
 fn volts_and_amperes_without_a_gain_stay_what_they_are() {
     let text = |name: &str| {
-        let mut text = format!("time_s,{name},angle_rad,model\n");
-        (0..40).for_each(|k| text += &format!("{},500,{},400\n", 0.001 * f64::from(k), k));
-        text
+        let rows = (0..40).map(|k| format!("{},500,{k},400\n", 0.001 * f64::from(k)));
+        format!("time_s,{name},angle_rad,model\n") + &rows.collect::<Vec<String>>().concat()
     };
     let force = |column: &str| Mapping { force: Source::column(column), ..Mapping::default() };
     for (column, unit, value) in [("u_mV", "V", 0.5), ("i_A", "A", 500.0), ("i [mA]", "A", 0.5)] {

@@ -61,7 +61,7 @@ fn structures_and_matrices_are_named_and_a_sample_without_a_number_is_left_out()
     assert!(error(&mapping("t", "note", "x")).contains("'note' is a text"));
     assert!(error(&mapping("t", "M", "x")).contains("'M' is 3 x 3"));
     let mapping = mapping("t", "nan", "x");
-    let loaded = aep_data::read(&fixture("mixed.mat"), &mapping).unwrap();
+    let loaded = read(&fixture("mixed.mat"), &mapping).unwrap();
     assert_eq!((loaded.left_out.missing, loaded.recording.len()), (1, 39));
 }
 

@@ -58,7 +58,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
     /// The file has several axes: search `all`, or those of these numbers or names (`1,3` or `elbow`). Columns of an axis
-    /// are told by its number or name (tau_1 and q_1, elbow_torque and elbow_angle); others with `{}` in its place:
+    /// are told by its number or name (`tau_1` and `q_1`, `elbow_torque` and `elbow_angle`); others with `{}` in its place:
     /// --force 'u_{}' --position 'enc_{}'. The time limit holds for each axis; -o and --series need a `{}`, too
     #[arg(long, value_name = "AXES", value_parser = axes::wanted)]
     axes: Option<Axes>,

@@ -15,17 +15,13 @@ fn machine(desk: &Desk, hidden: &[&str]) -> String {
         let row = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<String>>();
         joints.push(text.lines().skip(1).map(row).collect());
     }
-    let mut text = "time_s".to_owned();
-    for k in 1..=joints.len() {
-        text += &format!(",force_{k}_N,position_{k}_m");
-    }
-    for row in 0..joints[0].len() {
-        text += &format!("\n{}", joints[0][row][0]);
-        for joint in &joints {
-            text += &format!(",{},{}", joint[row][1], joint[row][2]);
-        }
-    }
-    text + "\n"
+    let names = (1..=joints.len()).map(|k| format!(",force_{k}_N,position_{k}_m"));
+    let row = |row: usize| {
+        let own = joints.iter().map(|joint| format!(",{},{}", joint[row][1], joint[row][2]));
+        format!("\n{}{}", joints[0][row][0], own.collect::<String>())
+    };
+    let rows: String = (0..joints[0].len()).map(row).collect();
+    format!("time_s{}{rows}\n", names.collect::<String>())
 }
 
 #[track_caller]

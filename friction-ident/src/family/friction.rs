@@ -116,7 +116,7 @@ impl FrictionFamily {
                 let stem = about.name.split(':').next().unwrap_or(about.name);
                 ELSEWHERE.iter().any(|slot| about.acts_on(*slot)) || OF_PLACE.contains(&stem)
             })
-            .map(|term| term.name())
+            .map(crate::model::Term::name)
             .collect();
         let part = names.iter().fold(model.clone(), |model, name| model.without(name));
         part.get(MASS).is_ok().then_some(part)

@@ -259,10 +259,9 @@ impl Prepared {
         let edge = Kernel::reach_of(self.bandwidth * self.interval);
         let mut compared = vec![f64::NAN; signal.len()];
         for range in &self.segments {
-            for k in range.start + edge..range.end.saturating_sub(edge) {
-                if self.kernel.at(&self.moving, k) > MOVING {
-                    compared[k] = self.kernel.at(&masked, k);
-                }
+            let inner = range.start + edge..range.end.saturating_sub(edge);
+            for k in inner.filter(|k| self.kernel.at(&self.moving, *k) > MOVING) {
+                compared[k] = self.kernel.at(&masked, k);
             }
         }
         compared
