@@ -6,6 +6,7 @@ mod effects;
 mod horizon;
 mod known;
 mod run;
+mod series;
 mod shell;
 
 pub use control::{LoopArgs, ReferenceArgs};
@@ -14,4 +15,5 @@ pub use effects::{EffectNames, add_files, known, library};
 pub use horizon::{Compared, TimeArgs, TimeTask};
 pub use known::KnownArgs;
 pub use run::{LimitArgs, OutputArgs, RunArgs};
+pub use series::{SeriesArgs, axis_path};
 pub use shell::flag;

@@ -66,7 +66,7 @@ fn duration(found: &Experiment) -> f64 {
 }
 
 fn in_json(family: &FrictionFamily, found: &Experiment, path: &Path) -> Value {
-    let force = format!("force_{}", family.axis().unit(Quantity::Force));
+    let force = format!("force_{}", family.effort().unit(family.axis(), Quantity::Force));
     let separation = |separation: &Separation| {
         json!({
             force.as_str(): separation.force,
@@ -93,7 +93,7 @@ fn in_json(family: &FrictionFamily, found: &Experiment, path: &Path) -> Value {
 }
 
 fn text(family: &FrictionFamily, found: &Experiment) -> String {
-    let unit = family.axis().unit(Quantity::Force);
+    let unit = family.effort().unit(family.axis(), Quantity::Force);
     let mut text =
         heading(&format!("An experiment to tell {} apart", found.effects.join(" from ")));
     let told = |separation: &Separation| {

@@ -8,8 +8,10 @@ mod example;
 mod experiment;
 mod failure;
 mod output;
+mod outputs;
 mod progress;
 mod report;
+mod series;
 mod steps;
 mod stop;
 

@@ -21,8 +21,8 @@ mod views;
 pub use check::data_check;
 pub use confirmation::{confirmation, surrogates};
 pub use discovery::{
-    Columns, compared, comparisons, ladder, note, notes, parameters, ranking, regimes, verdict,
-    where_it_fails, why,
+    Columns, compared, comparisons, ladder, note, notes, parameters, ranking, regimes, together,
+    verdict, where_it_fails, why,
 };
 pub use residual::{lines, tests};
 pub use style::{bold, dim, heading};

@@ -3,6 +3,7 @@
 use aep_data::Loaded;
 use aep_studio::Source;
 use missing_physics::measurement::check::DataCheck;
+use missing_physics::report::Combinations;
 use missing_physics::{Discovery, Thresholds};
 use serde_json::{Value, json};
 
@@ -31,6 +32,8 @@ pub struct Report<'a> {
     pub check: &'a DataCheck,
     /// What an effect had to gain, where that was asked.
     pub thresholds: Thresholds,
+    /// What parameters of the last model make together.
+    pub together: Combinations,
     /// Further entries of the JSON.
     pub more: Vec<(&'static str, Value)>,
 }
@@ -51,14 +54,16 @@ impl Report<'_> {
     }
 
     fn page(&self) -> String {
-        let source = Source { thresholds: self.thresholds, ..source(self.loaded) };
+        let together = self.together.clone();
+        let source = Source { thresholds: self.thresholds, together, ..source(self.loaded) };
         match self.kind {
             Kind::Discovery => aep_studio::report::html(self.discovery, &source, self.check),
             Kind::Comparison => aep_studio::report::comparison(self.discovery, &source, self.check),
         }
     }
 
-    fn json(&self) -> Result<Value, Failure> {
+    /// The discovery or comparison by the contract.
+    pub fn json(&self) -> Result<Value, Failure> {
         let broken =
             |error: serde_json::Error| Failure::failed(format!("cannot write JSON: {error}"));
         let mut json = match self.kind {
@@ -72,8 +77,14 @@ impl Report<'_> {
         for (key, value) in &self.more {
             json[*key] = value.clone();
         }
+        if !self.together.quantities.is_empty() {
+            json["friction"] = serde_json::to_value(&self.together).map_err(broken)?;
+        }
         json["recording"] = json!(self.loaded.recording.name());
         json["data"] = serde_json::to_value(self.check).map_err(broken)?;
+        let left_out = &self.loaded.left_out;
+        json["data"]["rows_left_out"] =
+            json!({ "without_number": left_out.missing, "time_repeated": left_out.repeated });
         Ok(json)
     }
 }
@@ -97,17 +108,23 @@ fn comparison(discovery: &Discovery) -> Value {
     })
 }
 
-fn source(loaded: &Loaded) -> Source {
+/// How a recording was read, for the page.
+pub fn source(loaded: &Loaded) -> Source {
     let columns = loaded.origins.iter();
     let columns = columns.map(|o| [o.channel.to_owned(), o.column.clone(), o.unit.to_owned()]);
-    // How the page is made again, quotes where a name has blanks.
-    let words = std::env::args()
-        .skip(1)
-        .map(|word| if word.contains(char::is_whitespace) { format!("'{word}'") } else { word });
     Source {
         name: loaded.recording.name().to_owned(),
         columns: columns.collect(),
-        command: format!("aep {}", words.collect::<Vec<String>>().join(" ")),
+        command: command(),
         thresholds: Thresholds::default(),
+        together: Combinations::default(),
     }
+}
+
+/// How the page is made again, quotes where a name has blanks.
+pub fn command() -> String {
+    let words = std::env::args()
+        .skip(1)
+        .map(|word| if word.contains(char::is_whitespace) { format!("'{word}'") } else { word });
+    format!("aep {}", words.collect::<Vec<String>>().join(" "))
 }

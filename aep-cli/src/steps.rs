@@ -7,7 +7,7 @@ use friction_ident::effects::Effect;
 use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::model::Timing;
-use friction_ident::{Axis, Known, Model};
+use friction_ident::{Axis, Effort, Known, Model, Quantity};
 use missing_physics::diagnosis::fitted_blocks;
 use missing_physics::fit::{self, Fit};
 use missing_physics::measurement::cut_at_gaps;
@@ -68,7 +68,8 @@ pub fn model_or_given(path: Option<&Path>, recording: &Recording) -> Result<Mode
     }
     let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
     let axis = if rotary { Axis::Rotary } else { Axis::Linear };
-    Ok(Model::beside(axis, Timing::default())?)
+    let unit = recording.channel("force").map_or("", |channel| channel.unit.as_str());
+    Ok(Model::beside(axis, Timing::default())?.with_effort(Effort::of(unit)))
 }
 
 /// Reads MODEL.json as something that can be simulated.
@@ -133,11 +134,12 @@ pub fn as_given(family: &FrictionFamily, model: &Model) -> Result<Fit, Failure> 
     Ok(fit::as_given(family, family.fitted(model)?))
 }
 
-/// Refuses a model of a linear axis for rotary data and the other way round.
+/// Refuses a model of a linear axis for rotary data and the other way round, and forces in another unit.
 pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> {
     if model.axis() != family.axis() {
         return Err(other_axis());
     }
+    same_effort(model, family.effort())?;
     if model.timing().is_some() == family.is_beside() {
         return Ok(());
     }
@@ -155,12 +157,40 @@ pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> 
     Err(Failure::bad_input(what).with_hint(hint))
 }
 
-/// Refuses recordings of a linear axis next to those of a rotary one.
-pub fn same_axes(family: &FrictionFamily, other: &FrictionFamily) -> Result<(), Failure> {
-    if family.axis() == other.axis() {
+/// Refuses a model in volts for a force in newtons, and the like.
+pub fn same_effort(model: &Model, effort: Effort) -> Result<(), Failure> {
+    if model.effort() == effort {
         return Ok(());
     }
-    let what = "one of the recordings is of a linear axis, the other of a rotary one";
+    let unit = |effort: Effort| effort.unit(model.axis(), Quantity::Force);
+    let (there, here) = (unit(model.effort()), unit(effort));
+    let what = format!("the model is in {there}, but the force of the data is in {here}");
+    Err(Failure::bad_input(what)
+        .with_hint("read both in one unit: --force-unit V, or a gain: --force-gain G"))
+}
+
+/// Refuses to compute a command in newtons from a model in volts or amperes.
+pub fn needs_force(model: &Model, path: &Path) -> Result<(), Failure> {
+    if model.effort().is_si() {
+        return Ok(());
+    }
+    let unit = model.effort().unit(model.axis(), Quantity::Force);
+    let what = format!("the model is in {unit}: a compensator commands a force or a torque");
+    Err(Failure::bad_input(what)
+        .in_file(path)
+        .with_hint("identify it with the gain of the drive: --force-gain G"))
+}
+
+/// Refuses recordings of a linear axis next to those of a rotary one.
+pub fn same_axes(family: &FrictionFamily, other: &FrictionFamily) -> Result<(), Failure> {
+    if family.axis() == other.axis() && family.effort() == other.effort() {
+        return Ok(());
+    }
+    let what = if family.axis() == other.axis() {
+        "the forces of the recordings are not in one unit"
+    } else {
+        "one of the recordings is of a linear axis, the other of a rotary one"
+    };
     Err(Failure::bad_input(what).with_hint("give --validate recordings of the same drive"))
 }
 

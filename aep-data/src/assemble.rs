@@ -1,5 +1,6 @@
 //! From the columns of a file to a checked recording in SI.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use missing_physics::{Channel, Recording, RecordingError};
@@ -7,9 +8,10 @@ use missing_physics::{Channel, Recording, RecordingError};
 use crate::enabled::switched_on;
 use crate::error::{DataError, Problem};
 use crate::expression::Expression;
+use crate::kept::{Kept, LeftOut, MOST, repeated};
 use crate::layouts::Layout;
 use crate::mapping::{Mapping, column_channel, regressor_channel};
-use crate::pick::Pick;
+use crate::pick::{Pick, Said};
 use crate::role::{self, Role};
 use crate::table::Table;
 
@@ -32,6 +34,8 @@ pub struct Loaded {
     pub unused: Vec<String>,
     /// Samples left out because the drive was switched off.
     pub switched_off: usize,
+    /// Rows left out because they have no number, or the time of the row before.
+    pub left_out: LeftOut,
 }
 
 /// Where a quantity came from.
@@ -54,17 +58,81 @@ pub(crate) fn assemble(
     let names = table.names();
     let layout = Layout::of(&names);
     let mapping = layout.map_or_else(|| mapping.clone(), |known| mapping.or(&known.mapping()));
-    let picks = picks(path, table, &mapping)?;
+    let mut picks = picks(path, table, &mapping)?;
+    drop_sparse(&mut picks, table, &mapping)?;
     let rotary = is_rotary(&picks).map_err(|problem| DataError::new(path, problem))?;
+    same_effort(&picks).map_err(|problem| DataError::new(path, problem))?;
     let extras = extras(path, table, &mapping)?;
-    let (recording, switched_off) = recording(path, table, &mapping, (&picks, &extras), rotary)?;
-    let origins = picks.iter().map(|pick| origin(pick, rotary)).collect();
+    let (kept, left_out) = kept(path, table, &picks, &extras)?;
+    let (recording, switched_off) = recording(path, &kept, &mapping, (&picks, &extras), rotary)?;
+    let origins = picks.iter().map(|pick| origin(pick, &picks, rotary)).collect();
     let used = |name: &String| {
         let beside = extras.iter().flat_map(|(_, expression)| expression.columns());
         picks.iter().flat_map(Pick::columns).chain(beside).any(|used| used == name)
     };
     let unused = names.iter().filter(|name| !used(name)).cloned().collect();
-    Ok(Loaded { recording, origins, layout: layout.map(|known| known.name), unused, switched_off })
+    Ok(Loaded {
+        recording,
+        origins,
+        layout: layout.map(|known| known.name),
+        unused,
+        switched_off,
+        left_out,
+    })
+}
+
+/// Leaves out what nobody asked for where it has no number in many rows: a temperature that is read once a second.
+fn drop_sparse(
+    picks: &mut Vec<Pick>,
+    table: &dyn Table,
+    mapping: &Mapping,
+) -> Result<(), DataError> {
+    let mut sparse = Vec::new();
+    for (k, pick) in picks.iter().enumerate() {
+        if pick.role.is_required() || mapping.source(pick.role).column.is_some() {
+            continue;
+        }
+        for name in pick.columns() {
+            let values = table.column(name)?.values;
+            let missing = values.iter().filter(|value| !value.is_finite()).count();
+            if missing as f64 > MOST * values.len() as f64 {
+                sparse.push(k);
+                break;
+            }
+        }
+    }
+    sparse.iter().rev().for_each(|k| drop(picks.remove(*k)));
+    Ok(())
+}
+
+/// The rows that have all numbers and a time of their own.
+fn kept<'a>(
+    path: &Path,
+    table: &'a dyn Table,
+    picks: &[Pick],
+    extras: &[(String, Expression)],
+) -> Result<(Kept<'a>, LeftOut), DataError> {
+    let beside = extras.iter().flat_map(|(_, expression)| expression.columns());
+    let columns: BTreeSet<&str> = picks.iter().flat_map(Pick::columns).chain(beside).collect();
+    let kept = Kept::of(table, &columns, path)?;
+    let missing = kept.left_out();
+    let of = |role: Role| picks.iter().find(|pick| pick.role == role);
+    let Some(time) = of(Role::Time) else {
+        return Ok((kept, LeftOut { missing, repeated: 0 }));
+    };
+    let values = time.values(&kept, path)?;
+    let segment = of(Role::Segment).map(|pick| pick.values(&kept, path)).transpose()?;
+    if values.len() != kept.len() {
+        return Ok((kept, LeftOut { missing, repeated: 0 }));
+    }
+    let again = repeated(&values, segment.as_deref());
+    let (rows, repeated) = (kept.len(), again.len());
+    if repeated as f64 > MOST * rows as f64 {
+        let error = DataError::new(path, Problem::TooManyRepeated { repeated, rows });
+        let first = again[0];
+        return Err(error.at_sample(first, kept.line(first)).in_column(&time.expression.text));
+    }
+    Ok((kept.without(&again), LeftOut { missing, repeated }))
 }
 
 /// Channels beside those of roles: regressors, and columns for laws that read them.
@@ -105,13 +173,39 @@ fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>,
     Ok(picks)
 }
 
+/// Unit of a channel: that of the axis, or V or A where the force is one.
+fn unit_of(pick: &Pick, picks: &[Pick], rotary: bool) -> &'static str {
+    let force = picks.iter().find(|other| other.role == Role::Force);
+    let electrical = match pick.role {
+        Role::Force => pick.electrical(),
+        // What says no unit of its own is in that of the force.
+        Role::ModelForce => force.and_then(Pick::electrical),
+        _ => None,
+    };
+    electrical.unwrap_or_else(|| unit(pick.role, rotary))
+}
+
+/// Refuses a model's force in another kind of unit than the force's.
+fn same_effort(picks: &[Pick]) -> Result<(), Problem> {
+    let of = |role: Role| picks.iter().find(|pick| pick.role == role);
+    let (Some(force), Some(model)) = (of(Role::Force), of(Role::ModelForce)) else { return Ok(()) };
+    let (there, here) = (force.electrical(), model.electrical());
+    let says_nothing = matches!(model.said, Said::Nothing | Said::Rotary) && here.is_none();
+    if there == here || (there.is_some() && says_nothing) {
+        return Ok(());
+    }
+    let name = |unit: Option<&'static str>| unit.unwrap_or("N or Nm");
+    let unit = name(here).to_owned();
+    Err(Problem::WrongUnit { role: "model_force", unit, known: vec![name(there)] })
+}
+
 fn unit(role: Role, rotary: bool) -> &'static str {
     let facts = role.facts();
     if rotary { facts.rotary.si() } else { facts.linear.si() }
 }
 
-fn origin(pick: &Pick, rotary: bool) -> Origin {
-    let unit = unit(pick.role, rotary);
+fn origin(pick: &Pick, picks: &[Pick], rotary: bool) -> Origin {
+    let unit = unit_of(pick, picks, rotary);
     Origin { channel: pick.role.facts().name, column: pick.expression.text.clone(), unit }
 }
 
@@ -147,7 +241,7 @@ fn recording(
             Role::Segment => segment = Some(whole(&values, pick, table, path)?),
             Role::Enabled => enabled = Some(values),
             role => {
-                let unit = unit(role, rotary);
+                let unit = unit_of(pick, picks, rotary);
                 check_size(&values, unit, pick, table, path)?;
                 channels.push(Channel::new(role.facts().name, unit, values));
             }

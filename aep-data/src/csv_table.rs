@@ -8,7 +8,7 @@ use csv::{ByteRecord, ReaderBuilder, Trim};
 use crate::error::{DataError, Problem};
 use crate::header::Header;
 use crate::table::{Bad, Column, Table, nearest};
-use crate::unit;
+use crate::{stamp, unit};
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
@@ -16,6 +16,8 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 pub(crate) struct CsvTable {
     path: PathBuf,
     columns: Vec<Column>,
+    /// The first time stamp of each column that holds such, ns.
+    stamps: Vec<Option<i64>>,
     lines: Vec<u64>,
 }
 
@@ -33,7 +35,9 @@ impl CsvTable {
             .flexible(true)
             .from_reader(bytes);
         let header = reader.byte_headers().map_err(|error| fail(unreadable(&error)))?.clone();
-        let mut table = Self { path: path.to_owned(), columns: columns(&header), lines: vec![] };
+        let columns = columns(&header);
+        let stamps = vec![None; columns.len()];
+        let mut table = Self { path: path.to_owned(), columns, stamps, lines: vec![] };
         table.check_header(header.position().map(csv::Position::line))?;
         let mut record = ByteRecord::new();
         while reader.read_byte_record(&mut record).map_err(|error| fail(unreadable(&error)))? {
@@ -80,9 +84,10 @@ impl CsvTable {
         }
         let sample = self.lines.len();
         self.lines.push(line);
-        for (column, field) in self.columns.iter_mut().zip(record) {
-            let value = number(field, delimiter);
-            if value.is_none() && column.bad.is_none() {
+        let columns = self.columns.iter_mut().zip(&mut self.stamps);
+        for ((column, first), field) in columns.zip(record) {
+            let value = number(field, delimiter).or_else(|| stamped(field, first, sample));
+            if value.is_none() && column.bad.is_none() && !is_missing(field) {
                 let text = String::from_utf8_lossy(field).into_owned();
                 column.bad = Some(Bad { sample, text });
             }
@@ -98,8 +103,16 @@ impl Table for CsvTable {
     }
 
     fn column(&self, name: &str) -> Result<Column, DataError> {
-        let found = self.columns.iter().find(|column| column.name == name);
-        found.cloned().ok_or_else(|| DataError::new(&self.path, self.missing("column", Some(name))))
+        let found = self.columns.iter().position(|column| column.name == name);
+        let found =
+            found.ok_or_else(|| DataError::new(&self.path, self.missing("column", Some(name))))?;
+        let mut column = self.columns[found].clone();
+        let unit = Header::parse(name).unit;
+        if let Some(unit) = unit.filter(|_| self.stamps[found].is_some()) {
+            // Stamps are in seconds, whatever the name says.
+            column.values.iter_mut().for_each(|value| *value /= unit.factor);
+        }
+        Ok(column)
     }
 
     fn line(&self, sample: usize) -> Option<u64> {
@@ -167,6 +180,26 @@ fn number(field: &[u8], delimiter: u8) -> Option<f64> {
         decimal_comma.then(|| text.replacen(',', ".", 1).parse().ok()).flatten()
     })?;
     f64::is_finite(value).then_some(value)
+}
+
+/// A time stamp as seconds from the first one of its column on, which keeps all its digits.
+fn stamped(field: &[u8], first: &mut Option<i64>, sample: usize) -> Option<f64> {
+    // A column of stamps begins with one; nothing else pays for the look.
+    if sample > 0 && first.is_none() {
+        return None;
+    }
+    let now = stamp::nanoseconds(std::str::from_utf8(field).ok()?.trim())?;
+    let start = *first.get_or_insert(now);
+    Some((now - start) as f64 / 1e9)
+}
+
+/// Whether a field says that there is no number: empty, NaN, infinite, or a word for it.
+fn is_missing(field: &[u8]) -> bool {
+    let Ok(text) = std::str::from_utf8(field) else { return false };
+    let text = text.trim();
+    let words = ["", "-", "na", "n/a", "#n/a", "null", "none", "missing"];
+    words.iter().any(|word| text.eq_ignore_ascii_case(word))
+        || text.parse::<f64>().is_ok_and(|value| !value.is_finite())
 }
 
 fn unreadable(error: &csv::Error) -> Problem {

@@ -172,6 +172,34 @@ pub enum Problem {
         /// What stands there.
         value: String,
     },
+    /// So many rows without a number that the rest is no recording.
+    #[error(
+        "{missing} of {rows} rows have no number in a column that is used, the first one here; up to a quarter are left out"
+    )]
+    TooManyMissing {
+        /// Rows without a number.
+        missing: usize,
+        /// All rows.
+        rows: usize,
+    },
+    /// So many rows with the time of the row before that the times say nothing.
+    #[error(
+        "{repeated} of {rows} rows have the time of the row before; up to a quarter are left out"
+    )]
+    TooManyRepeated {
+        /// Rows with the time of the row before.
+        repeated: usize,
+        /// All rows.
+        rows: usize,
+    },
+    /// A velocity, but no position.
+    #[error(
+        "there is a velocity ('{column}'), but no position: models are judged by the positions that they predict"
+    )]
+    VelocityOnly {
+        /// The column of the velocity.
+        column: String,
+    },
     /// A column that is needed is not there.
     #[error("no column for the {role}{}; the file has: {}", wanted(.column.as_deref()), listed(.present))]
     MissingColumn {
@@ -183,6 +211,20 @@ pub enum Problem {
         present: Vec<String>,
         /// The one that was probably meant.
         nearest: Option<String>,
+    },
+    /// No groups of columns that could be axes.
+    #[error("no axes found: no force and position of the same number or joint name; the file has: {}", listed(.present))]
+    NoAxes {
+        /// The names there are.
+        present: Vec<String>,
+    },
+    /// An axis that is not there.
+    #[error("there is no axis '{name}'; there are: {}", .present.join(", "))]
+    NoAxis {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        present: Vec<String>,
     },
     /// A variable that is needed is not in the `.mat` file.
     #[error("no variable for the {role}{}; the file has: {}", wanted(.column.as_deref()), listed(.present))]
@@ -227,9 +269,6 @@ pub enum Problem {
     /// Ends in `.mat`, is none.
     #[error("this is not a MATLAB v5 file")]
     NotMat,
-    /// A `.mat` of version 7.3.
-    #[error("this MATLAB file is of version 7.3 (HDF5), which is not read")]
-    Hdf5,
     /// A `.mat` that ends in the middle or holds nonsense.
     #[error("the MATLAB file is damaged: {what}")]
     DamagedMat {
@@ -379,6 +418,22 @@ impl Problem {
                 format!("mend it at the mark; 'aep effects --formula' lists all functions\n{shown}")
             }
             Self::Damaged { .. } => "write it once more, or as CSV with time_s,force_N,position_m".to_owned(),
+            Self::TooManyMissing { .. } => {
+                "fill the column, cut the file (--from, --to), or leave the column out".to_owned()
+            }
+            Self::TooManyRepeated { .. } => {
+                "write the time with more digits, or say the sampling interval: --interval 0.001".to_owned()
+            }
+            Self::VelocityOnly { .. } => {
+                "record the position, too: the integral of a measured velocity drifts by far more than an encoder errs, which \
+                 would be taken for missing physics"
+                    .to_owned()
+            }
+            Self::NoAxes { .. } => format!(
+                "looked for names such as torque_1 and position_1, tau_0 and q_0, elbow_torque and elbow_angle; say others \
+                 with {{}} in place of the axis: --force 'u_{{}}' --position 'enc_{{}}', or with [axes.NAME] in {toml}"
+            ),
+            Self::NoAxis { .. } => "choose some of these, or --axes all".to_owned(),
             Self::Nothing { .. } => "check the formula, or leave it out".to_owned(),
             Self::NotFinite { .. } => {
                 "keep it within its domain, e.g. sqrt(max(0, x)) or log(max(1e-9, x)), or leave the row out".to_owned()
@@ -409,7 +464,7 @@ impl Problem {
             }
             Self::NotAVector { .. } => "save one column of it as a variable of its own".to_owned(),
             Self::Length { .. } => "all vectors must have one value a sample".to_owned(),
-            Self::NotMat | Self::Hdf5 | Self::DamagedMat { .. } => {
+            Self::NotMat | Self::DamagedMat { .. } => {
                 "in MATLAB: load it, then save('data.mat', '-v7'); or write a CSV with \
                  time_s,force_N,position_m"
                     .to_owned()

@@ -62,7 +62,10 @@ fn brackets(name: &str) -> Option<(&str, &str)> {
     let name = name.trim();
     let (open, close) = if name.ends_with(']') { ('[', ']') } else { ('(', ')') };
     let (base, text) = name.strip_suffix(close)?.split_once(open)?;
-    (!base.trim().is_empty()).then_some((base, text.trim()))
+    let text = text.trim();
+    // A number is an index, no unit: `position[0]`.
+    let is_index = !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    (!base.trim().is_empty() && !is_index).then_some((base, text))
 }
 
 fn plain(base: &str) -> String {

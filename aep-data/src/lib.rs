@@ -1,4 +1,4 @@
-//! Recordings from files: CSV, MATLAB v5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
+//! Recordings from files: CSV, MATLAB, HDF5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
 //! mend them.
 //!
 //! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised
@@ -27,11 +27,14 @@
 //! ```
 
 mod assemble;
+mod axes;
 mod csv_table;
 mod enabled;
 mod error;
 mod expression;
+mod hdf5_table;
 mod header;
+mod kept;
 mod layouts;
 mod mapping;
 mod mat_index;
@@ -44,8 +47,10 @@ mod pick;
 mod reference;
 mod role;
 mod save;
+mod series;
 mod several;
 mod sheet;
+mod stamp;
 mod table;
 mod text;
 pub mod unit;
@@ -55,19 +60,23 @@ use std::io::Read;
 use std::path::Path;
 
 pub use assemble::{Loaded, Origin};
+pub use axes::{Axes, LoadedAxes, PLACE, read_axes};
 pub use error::{DataError, Problem};
+pub use kept::LeftOut;
 pub use layouts::{LAYOUTS, Layout};
 pub use mapping::{Mapping, Source, column_channel, hold_name, parse_hold, regressor_channel};
 pub use part::{Part, part};
 pub use reference::{ReferencePath, read_reference};
 pub use role::{ALL as ROLES, Facts, Role};
-pub use save::{SaveError, save};
+pub use save::{SaveError, save, save_with};
+pub use series::{Format, Values, save_series};
 pub use several::read_all;
 pub use write::{to_csv, to_csv_rounded, to_toml};
 
 use csv_table::CsvTable;
 use mat_table::MatTable;
 use missing_physics::Recording;
+use table::Table;
 
 /// The name of a file that stands for standard input.
 pub const STANDARD_INPUT: &str = "-";
@@ -86,20 +95,31 @@ pub fn load(path: &Path, mapping: &Mapping) -> Result<Recording, DataError> {
 /// # Errors
 /// Like [`load`].
 pub fn read(path: &Path, mapping: &Mapping) -> Result<Loaded, DataError> {
+    let (table, mapping) = open(path, mapping)?;
+    assemble::assemble(path_of(path), &*table, &mapping)
+}
+
+/// The name by which a file is told.
+fn path_of(path: &Path) -> &Path {
+    if path.as_os_str() == STANDARD_INPUT { Path::new("standard input") } else { path }
+}
+
+/// The file as named columns, and how it is read: by `mapping` and by `DATA.toml` beside it.
+fn open(path: &Path, mapping: &Mapping) -> Result<(Box<dyn Table>, Mapping), DataError> {
     if path.is_dir() {
         return Err(DataError::new(path, Problem::Directory { files: data_files(path) }));
     }
     if path.as_os_str() == STANDARD_INPUT {
-        let (mut bytes, name) = (Vec::new(), Path::new("standard input"));
+        let (mut bytes, name) = (Vec::new(), path_of(path));
         std::io::stdin()
             .lock()
             .read_to_end(&mut bytes)
             .map_err(|error| DataError::new(name, unreadable(&error)))?;
-        return parse(name, bytes, mapping);
+        return Ok((table(name, bytes)?, mapping.clone()));
     }
     let bytes = std::fs::read(path).map_err(|error| DataError::new(path, unreadable(&error)))?;
     let mapping = mapping.or(&Mapping::beside(path)?);
-    parse(path, bytes, &mapping)
+    Ok((table(path, bytes)?, mapping))
 }
 
 /// The recording in `bytes`, the content of a file called `path`; its format is told by the bytes.
@@ -107,24 +127,29 @@ pub fn read(path: &Path, mapping: &Mapping) -> Result<Loaded, DataError> {
 /// # Errors
 /// Like [`load`].
 pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, DataError> {
+    assemble::assemble(path, &*table(path, bytes)?, mapping)
+}
+
+/// The columns in `bytes`, the content of a file called `path`.
+fn table(path: &Path, bytes: Vec<u8>) -> Result<Box<dyn Table>, DataError> {
     let named_mat = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mat"));
     if bytes.is_empty() {
         return Err(DataError::new(path, Problem::Empty));
     }
     if mat_index::is_hdf5(&bytes) {
-        return Err(DataError::new(path, Problem::Hdf5));
+        return Ok(Box::new(hdf5_table::Hdf5Table::parse(path, bytes)?));
     }
     if mat_index::is_mat5(&bytes) {
-        return assemble::assemble(path, &MatTable::parse(path, bytes)?, mapping);
+        return Ok(Box::new(MatTable::parse(path, bytes)?));
     }
     if named_mat {
         return Err(DataError::new(path, Problem::NotMat));
     }
     if parquet_table::is_parquet(&bytes) {
-        return assemble::assemble(path, &parquet_table::read(path, bytes)?, mapping);
+        return Ok(Box::new(parquet_table::read(path, bytes)?));
     }
     if npz::is_npz(&bytes) {
-        return assemble::assemble(path, &npz::read(path, &bytes)?, mapping);
+        return Ok(Box::new(npz::read(path, &bytes)?));
     }
     let bytes = if sheet::is_xlsx(&bytes) { sheet::as_text(path, &bytes)? } else { bytes };
     let bytes = text::decoded(&bytes).map_err(|problem| DataError::new(path, problem))?;
@@ -132,7 +157,7 @@ pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, D
         Some(head) => CsvTable::parse(path, &head.bytes)?.with_units(&head.units),
         None => CsvTable::parse(path, &bytes)?,
     };
-    assemble::assemble(path, &table, mapping)
+    Ok(Box::new(table))
 }
 
 fn unreadable(error: &std::io::Error) -> Problem {
@@ -143,7 +168,7 @@ fn unreadable(error: &std::io::Error) -> Problem {
 }
 
 /// Endings of files that are read.
-const FORMATS: [&str; 5] = ["csv", "mat", "parquet", "npz", "xlsx"];
+const FORMATS: [&str; 6] = ["csv", "mat", "parquet", "npz", "xlsx", "h5"];
 
 /// The files of a folder that could be recordings, sorted.
 fn data_files(folder: &Path) -> Vec<String> {

@@ -50,6 +50,9 @@ impl Source {
 /// model_force = "0.9*tau_model"             # what your own model gives; any column may be a formula
 /// [regressors]
 /// joint2 = "a2*cos(q1)"                      # known up to a factor
+/// [axes.elbow]                               # several axes in one file: a table for each
+/// force = "i_3_A"
+/// position = "enc_3"
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -74,6 +77,8 @@ pub struct Mapping {
     pub model_force: Source,
     /// Known regressors: a name, and a formula over columns. Each becomes a channel [`regressor_channel`].
     pub regressors: BTreeMap<String, String>,
+    /// Axes of a file with several, by name: what is read differently for each (`[axes.elbow]`).
+    pub axes: BTreeMap<String, Mapping>,
     /// Columns that are kept as they are, for laws that read them. Each becomes a channel [`column_channel`].
     #[serde(skip)]
     pub columns: Vec<String>,
@@ -114,6 +119,7 @@ impl Mapping {
             enabled: self.enabled.or(&other.enabled),
             model_force: self.model_force.or(&other.model_force),
             regressors: joined(&self.regressors, &other.regressors),
+            axes: if self.axes.is_empty() { other.axes.clone() } else { self.axes.clone() },
             columns: self.columns.iter().chain(&other.columns).cloned().collect(),
             interval_s: self.interval_s.or(other.interval_s),
             hold: self.hold.or(other.hold),

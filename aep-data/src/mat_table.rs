@@ -6,7 +6,7 @@ use matfile::{MatFile, NumericData};
 
 use crate::error::{DataError, Problem};
 use crate::mat_index::{self, Entry, HEADER};
-use crate::table::{Bad, Column, Table, nearest};
+use crate::table::{Column, Table, nearest};
 
 /// An opened MATLAB file.
 pub(crate) struct MatTable {
@@ -48,9 +48,7 @@ impl Table for MatTable {
             .map_err(|error| damaged(format!("'{name}': {error}")))?;
         let array = file.arrays().first().ok_or_else(|| damaged(format!("'{name}' is cut off")))?;
         let values = real(array.data());
-        let bad = values.iter().position(|value| !value.is_finite());
-        let bad = bad.map(|sample| Bad { sample, text: values[sample].to_string() });
-        Ok(Column { name: name.to_owned(), values, bad })
+        Ok(Column { name: name.to_owned(), values, bad: None })
     }
 
     fn line(&self, _sample: usize) -> Option<u64> {

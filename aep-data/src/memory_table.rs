@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::error::{DataError, Problem};
-use crate::table::{Bad, Column, Table, nearest};
+use crate::table::{Column, Table, nearest};
 
 /// Named columns in memory.
 pub(crate) struct MemoryTable {
@@ -12,16 +12,12 @@ pub(crate) struct MemoryTable {
 }
 
 impl MemoryTable {
-    /// Of columns with their names; what is not finite is told where a column is used.
+    /// Of columns with their names.
     pub fn new(path: &Path, columns: Vec<(String, Vec<f64>)>) -> Result<Self, DataError> {
         if columns.is_empty() {
             return Err(DataError::new(path, Problem::Empty));
         }
-        let columns = columns.into_iter().map(|(name, values)| {
-            let bad = values.iter().position(|value| !value.is_finite());
-            let bad = bad.map(|sample| Bad { sample, text: values[sample].to_string() });
-            Column { name, values, bad }
-        });
+        let columns = columns.into_iter().map(|(name, values)| Column { name, values, bad: None });
         Ok(Self { path: path.to_owned(), columns: columns.collect() })
     }
 }

@@ -15,6 +15,8 @@ use crate::unit::{self, Quantity, Unit};
 pub(crate) enum Said {
     /// The name or the mapping gives the unit.
     Unit(&'static Unit),
+    /// A voltage or a current that stays one: its factor to V or A.
+    Electrical(&'static Unit),
     /// Only the word, such as `torque`, says that it is rotary, in SI.
     Rotary,
     /// Nothing says it: SI.
@@ -62,7 +64,15 @@ impl Pick {
             _ if facts.linear == facts.rotary => None,
             Said::Unit(unit) => Some(unit.quantity == facts.rotary),
             Said::Rotary => Some(true),
-            Said::Nothing => None,
+            Said::Nothing | Said::Electrical(_) => None,
+        }
+    }
+
+    /// `V` or `A` where it is a voltage or a current in place of a force.
+    pub fn electrical(&self) -> Option<&'static str> {
+        match self.said {
+            Said::Electrical(unit) => unit::electrical(unit),
+            _ => None,
         }
     }
 
@@ -75,7 +85,7 @@ impl Pick {
     pub fn values(&self, table: &dyn Table, path: &Path) -> Result<Vec<f64>, DataError> {
         let values = self.expression.values(table, path)?;
         let (factor, shift) = match self.said {
-            Said::Unit(unit) => (unit.factor * self.gain, unit.shift),
+            Said::Unit(unit) | Said::Electrical(unit) => (unit.factor * self.gain, unit.shift),
             _ => (self.gain, 0.0),
         };
         Ok(values.into_iter().map(|value| value * factor + shift).collect())
@@ -88,6 +98,9 @@ fn no_column(role: Role, source: &Source, table: &dyn Table, path: &Path) -> Res
     }
     let name = role.facts().name;
     let names = table.names();
+    if let Some(column) = recognise(Role::Velocity, &names).filter(|_| role == Role::Position) {
+        return Err(DataError::new(path, Problem::VelocityOnly { column: column.clone() }));
+    }
     let Some((column, unit)) = unit_unknown(role, &names) else {
         return Err(DataError::new(path, table.missing(name, None)));
     };
@@ -106,6 +119,9 @@ fn checked_gain(role: Role, source: &Source) -> Result<f64, Problem> {
 fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Problem> {
     if let Some(text) = &source.unit {
         let unit = unit::find(text).ok_or_else(|| unknown_unit(role, text))?;
+        if is_effort(role) && unit::electrical(unit).is_some() {
+            return Ok(Said::Electrical(unit));
+        }
         return accepted(role, unit).map(Said::Unit);
     }
     let Some(name) = column else {
@@ -116,6 +132,9 @@ fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Probl
         (Some(unit), _) if role.accepts(unit.quantity) => Ok(Said::Unit(unit)),
         // A gain turns whatever it is into SI.
         _ if source.gain.is_some() => Ok(Said::Nothing),
+        (Some(unit), _) if is_effort(role) && unit::electrical(unit).is_some() => {
+            Ok(Said::Electrical(unit))
+        }
         (Some(unit), _) if unit.quantity == Quantity::Raw => {
             Err(Problem::NeedsGain { role: role.facts().name, unit: unit.name.to_owned() })
         }
@@ -124,6 +143,11 @@ fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Probl
         _ if role.facts().rotary_aliases.contains(&header.base.as_str()) => Ok(Said::Rotary),
         _ => Ok(Said::Nothing),
     }
+}
+
+/// Whether a voltage or a current may stand in its place.
+fn is_effort(role: Role) -> bool {
+    matches!(role, Role::Force | Role::ModelForce)
 }
 
 fn known_units(role: Role) -> Vec<&'static str> {

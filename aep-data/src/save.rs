@@ -1,5 +1,6 @@
 //! Files that are either written completely or not at all.
 
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -22,7 +23,18 @@ pub struct SaveError {
 /// # Errors
 /// The path and what the system says.
 pub fn save(path: &Path, bytes: &[u8]) -> Result<(), SaveError> {
-    write(path, bytes)
+    save_with(path, |file| file.write_all(bytes))
+}
+
+/// Like [`save`], of what `write` writes piece by piece: a table of millions of rows need not be made in memory.
+///
+/// # Errors
+/// Like [`save`].
+pub fn save_with(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> Result<(), SaveError> {
+    replace(path, write)
         .map_err(|error| SaveError { path: path.to_owned(), source: without_path(error) })
 }
 
@@ -35,7 +47,10 @@ fn without_path(error: std::io::Error) -> std::io::Error {
     }
 }
 
-fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+fn replace(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> std::io::Result<()> {
     // Through a link to the file it names, so that the link stays one.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     if target.is_dir() {
@@ -43,11 +58,11 @@ fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     }
     // A device or a pipe has no content to protect, and must not be replaced by a file.
     if target.exists() && !target.is_file() {
-        return std::fs::write(&target, bytes);
+        return write(&mut File::options().write(true).truncate(true).open(&target)?);
     }
     let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty());
     let mut file = builder().tempfile_in(parent.unwrap_or_else(|| Path::new(".")))?;
-    file.write_all(bytes)?;
+    write(file.as_file_mut())?;
     file.as_file().sync_all()?;
     if let Ok(old) = target.metadata() {
         file.as_file().set_permissions(old.permissions())?;

@@ -19,16 +19,25 @@ const RATES: f64 = 3.0;
 /// Like [`read`]; and where the files are not of one axis, differ in how the force is held, or widely in
 /// their sampling.
 pub fn read_all(paths: &[PathBuf], mapping: &Mapping) -> Result<Loaded, DataError> {
-    let Some((first, others)) = paths.split_first() else {
+    join(paths.iter().map(|path| Ok((path, read(path, mapping)?))))
+}
+
+/// Pieces, each with its file, as one recording.
+pub(crate) fn join<'a>(
+    mut pieces: impl Iterator<Item = Result<(&'a PathBuf, Loaded), DataError>>,
+) -> Result<Loaded, DataError> {
+    let Some(first) = pieces.next() else {
         return Err(DataError::new(Path::new(""), Problem::Absent));
     };
-    let mut all = read(first, mapping)?;
-    for path in others {
-        let next = read(path, mapping)?;
+    let (first, mut all) = first?;
+    for piece in pieces {
+        let (path, next) = piece?;
         agree(&all.recording, &next.recording).map_err(|problem| DataError::new(path, problem))?;
         all.recording = joined(&all.recording, &next.recording)
             .map_err(|error| DataError::new(path, Problem::Recording(error)))?;
         all.switched_off += next.switched_off;
+        all.left_out.missing += next.left_out.missing;
+        all.left_out.repeated += next.left_out.repeated;
         all.unused.retain(|name| next.unused.contains(name));
     }
     let present = |name: &str| name == "time" || all.recording.channel(name).is_some();

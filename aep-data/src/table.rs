@@ -2,7 +2,7 @@
 
 use crate::error::{DataError, Problem};
 
-/// The first value of a column that is no number.
+/// The first value of a column that is no number by mistake: a text, where an empty field says that there is none.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Bad {
     /// Sample, from 0.
@@ -16,9 +16,9 @@ pub(crate) struct Bad {
 pub(crate) struct Column {
     /// Its name in the file.
     pub name: String,
-    /// One value a sample, or a single one that holds for all.
+    /// One value a sample, or a single one that holds for all; not finite where there is none.
     pub values: Vec<f64>,
-    /// The first value that is no number, if there is one.
+    /// The first value that is no number by mistake, if there is one.
     pub bad: Option<Bad>,
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::error::Problem;
-use crate::unit;
+use crate::{stamp, unit};
 
 /// Lines in which a header is looked for.
 const MOST_LINES: usize = 100;
@@ -83,7 +83,9 @@ fn fields(line: &str) -> Option<(usize, char)> {
         let fields = split(line, delimiter);
         let is_number = |field: &&str| {
             let point = field.replacen(',', ".", 1);
-            field.parse::<f64>().is_ok() || (delimiter != ',' && point.parse::<f64>().is_ok())
+            field.parse::<f64>().is_ok()
+                || stamp::nanoseconds(field).is_some()
+                || (delimiter != ',' && point.parse::<f64>().is_ok())
         };
         (fields.len() > 1 && fields.iter().all(is_number)).then_some((fields.len(), delimiter))
     })

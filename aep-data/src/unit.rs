@@ -146,6 +146,15 @@ pub fn find(text: &str) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| unit.name == name)
 }
 
+/// `V` or `A`, where a unit is of a voltage or a current.
+pub fn electrical(unit: &Unit) -> Option<&'static str> {
+    match unit.name {
+        "V" | "mV" => Some("V"),
+        "A" | "mA" => Some("A"),
+        _ => None,
+    }
+}
+
 /// The unit that was probably meant by `text`.
 pub fn nearest(text: &str) -> Option<&'static str> {
     let same_letters = UNITS.iter().find(|unit| unit.name.eq_ignore_ascii_case(text.trim()));

@@ -51,20 +51,60 @@ fn a_column_that_was_asked_for_and_is_not_there_is_named() {
 }
 
 #[test]
-fn nan_and_text_name_line_column_and_value() {
-    for (row, value) in [
-        ("0.003,nan,0.1", "'nan'"),
-        ("0.003,1.2.3,0.1", "'1.2.3'"),
-        ("0.003,,0.1", "an empty field"),
-    ] {
-        let error = csv(&with_line(5, row));
-        assert_says(&error, &[value, "run.csv, line 5, column 'force_N'", "delete the row"]);
+fn text_in_place_of_a_number_names_line_column_and_value() {
+    let error = csv(&with_line(5, "0.003,1.2.3,0.1"));
+    let place = "run.csv, line 5, column 'force_N'";
+    assert_says(&error, &["'1.2.3'", place, "delete the row"]);
+    // Also where rows before it are left out.
+    let text = with_line(5, "0.003,1.2.3,0.1").replace("0.001,1.5", "0.001,nan");
+    assert_says(&csv(&text), &["'1.2.3'", place]);
+}
+
+#[test]
+fn rows_without_a_number_or_with_the_time_before_are_left_out_and_counted() {
+    for row in ["0.003,nan,0.1", "0.003,,0.1", "0.003,-inf,0.1", "nan,1.5,0.1", "0.003,null,0.1"] {
+        let loaded =
+            parse(Path::new("run.csv"), with_line(5, row).into_bytes(), &Mapping::default());
+        let loaded = loaded.unwrap();
+        assert_eq!((loaded.left_out.missing, loaded.left_out.repeated), (1, 0), "{row}");
+        assert_eq!(loaded.recording.len(), 19);
+        assert!(!loaded.recording.time().contains(&0.003), "{row}");
     }
+    let text = with_line(6, "0.003,1.5,0.1").into_bytes();
+    let loaded = parse(Path::new("run.csv"), text, &Mapping::default()).unwrap();
+    assert_eq!((loaded.left_out.missing, loaded.left_out.repeated), (0, 1));
+    // The row that came first stays.
+    assert_eq!(loaded.recording.require("position").unwrap()[3], 0.03);
+}
+
+#[test]
+fn more_than_a_quarter_of_the_rows_is_too_much_to_leave_out() {
+    let rows = |of: &dyn Fn(u32) -> String| {
+        let all: Vec<String> = (0..40).map(of).collect();
+        format!("time_s,force_N,position_m\n{}\n", all.join("\n"))
+    };
+    let force = |k: u32| if k % 3 == 1 { "" } else { "1.5" };
+    let error = csv(&rows(&|k| format!("{},{},0.1", f64::from(k) * 0.001, force(k))));
+    assert_says(&error, &["13 of 40 rows have no number", "line 3, column 'force_N'", "--from"]);
+    let error = csv(&rows(&|k| format!("{},1.5,0.1", f64::from(k / 2) * 0.001)));
+    assert_says(&error, &["20 of 40 rows have the time of the row before", "--interval"]);
+    // What nobody asked for is not used then.
+    let text = rows(&|k| format!("{},1.5,0.1,{}", f64::from(k) * 0.001, force(k)));
+    let text = text.replace("position_m\n", "position_m,temperature_C\n");
+    let loaded = parse(Path::new("run.csv"), text.into_bytes(), &Mapping::default()).unwrap();
+    assert_eq!(loaded.unused, ["temperature_C"]);
+    assert_eq!(loaded.recording.len(), 40);
+}
+
+#[test]
+fn a_velocity_is_no_position() {
+    let error = csv(&with_line(1, "time_s,force_N,velocity_m_s"));
+    assert_says(&error, &["there is a velocity ('velocity_m_s'), but no position", "drifts"]);
 }
 
 #[test]
 fn lines_are_counted_with_comments_and_blank_lines() {
-    let text = format!("# made by hand\n\n{}", with_line(5, "0.003,inf,0.1"));
+    let text = format!("# made by hand\n\n{}", with_line(5, "0.003,abc,0.1"));
     assert_eq!(csv(&text).line, Some(7));
 }
 
@@ -101,9 +141,12 @@ fn units_that_are_unknown_wrong_or_need_a_gain() {
     assert_says(&error, &["'furlong'", "mN", "--force-unit"]);
     let error = csv(&with_line(1, "time_s,force_KN,position_m"));
     assert_says(&error, &["'KN'", "did you mean kN?", "--force force_KN --force-unit kN"]);
-    let volts = Mapping { force: Source::column("u_V"), ..Mapping::default() };
-    let error = mapped(&with_line(1, "time_s,u_V,position_m"), &volts);
-    assert_says(&error, &["in V", "--force-gain"]);
+    let counts = Mapping { force: Source::column("u_counts"), ..Mapping::default() };
+    let error = mapped(&with_line(1, "time_s,u_counts,position_m"), &counts);
+    assert_says(&error, &["in counts", "--force-gain"]);
+    let volts = Mapping { position: Source::column("u_V"), ..Mapping::default() };
+    let error = mapped(&with_line(1, "time_s,force_N,u_V"), &volts);
+    assert_says(&error, &["in V", "--position-gain"]);
     let metres = Mapping { force: Source::column("position_m"), ..Mapping::default() };
     let error = mapped(&with_line(1, "time_s,u_V,position_m"), &metres);
     assert_says(&error, &["'m' is no unit of a force"]);
@@ -148,7 +191,7 @@ fn other_files_are_recognised() {
     assert_says(&bytes(b"\xff\xfet\0i", "run.csv"), &["UTF-16", "UTF-8"]);
     assert_says(&bytes(b"PK\x03\x04....", "run.xlsx"), &["spreadsheet"]);
     assert_says(&bytes(b"time,force", "run.mat"), &["not a MATLAB v5 file", "'-v7'"]);
-    assert_says(&bytes(b"\x89HDF\r\n\x1a\n....", "run.mat"), &["7.3", "save('data.mat', '-v7')"]);
+    assert_says(&bytes(b"\x89HDF\r\n\x1a\n....", "run.mat"), &["the HDF5 file cannot be read"]);
 }
 
 #[test]

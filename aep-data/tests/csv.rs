@@ -118,3 +118,59 @@ fn rounded_numbers_keep_the_digits_asked_for() {
     assert_eq!(text.lines().nth(1), Some("0,0,0"));
     assert_eq!(text.lines().nth(4), Some("0.003,37.037,-0.000003"));
 }
+
+#[test]
+fn time_stamps_are_read_to_the_nanosecond_from_the_first_one_on() {
+    let row = |k: u32| {
+        let nanoseconds = 990_000_000 + 250_001 * k;
+        format!("2026-03-01T23:59:59,{nanoseconds:09};{k};{}\n", 2 * k)
+    };
+    let text = "Recorder: X\nwhen;force;position\n;N;mm\n".to_owned();
+    let text = text + &(0..40).map(row).collect::<Vec<String>>().concat();
+    let mapping = Mapping { time: Source::column("when"), ..Mapping::default() };
+    let loaded = parse(Path::new("run.csv"), text.into_bytes(), &mapping).unwrap();
+    let time = loaded.recording.time();
+    assert_eq!(time[0], 0.0);
+    assert!((time[39] - 39.0 * 250_001e-9).abs() < 1e-15, "{}", time[39]);
+    // Whatever unit the name says.
+    let rows = (0..40).map(|k| format!("2026-03-01 10:00:{k:02}Z,1,2\n"));
+    let text = "time_ms,force_N,position_m\n".to_owned() + &rows.collect::<Vec<String>>().concat();
+    let loaded = parse(Path::new("run.csv"), text.into_bytes(), &Mapping::default()).unwrap();
+    assert!((loaded.recording.time()[39] - 39.0).abs() < 1e-12);
+}
+
+#[test]
+fn volts_and_amperes_without_a_gain_stay_what_they_are() {
+    let text = |name: &str| {
+        let rows = (0..40).map(|k| format!("{},500,{k},400\n", 0.001 * f64::from(k)));
+        format!("time_s,{name},angle_rad,model\n") + &rows.collect::<Vec<String>>().concat()
+    };
+    let force = |column: &str| Mapping { force: Source::column(column), ..Mapping::default() };
+    for (column, unit, value) in [("u_mV", "V", 0.5), ("i_A", "A", 500.0), ("i [mA]", "A", 0.5)] {
+        let loaded = read(&text(column), &force(column));
+        let channel = loaded.recording.channel("force").unwrap();
+        assert_eq!((channel.unit.as_str(), channel.values[0]), (unit, value));
+        assert_eq!(loaded.origins[1].unit, unit);
+        assert!(to_csv(&loaded.recording).starts_with(&format!("time_s,force_{unit},")));
+    }
+    // A gain makes a torque of it, and so does nothing else.
+    let gain = Mapping {
+        force: Source { column: Some("u_V".into()), gain: Some(2.0), ..Source::default() },
+        ..Mapping::default()
+    };
+    assert_eq!(read(&text("u_V"), &gain).recording.channel("force").unwrap().unit, "Nm");
+    // The force of a model is in the unit of the force.
+    let both = |unit: Option<&str>| Mapping {
+        model_force: Source {
+            column: Some("model".into()),
+            unit: unit.map(str::to_owned),
+            gain: None,
+        },
+        ..force("u_V")
+    };
+    let loaded = read(&text("u_V"), &both(None));
+    assert_eq!(loaded.recording.channel("model_force").unwrap().unit, "V");
+    let bytes = text("u_V").into_bytes();
+    let error = parse(Path::new("run.csv"), bytes, &both(Some("Nm"))).unwrap_err();
+    assert!(error.to_string().contains("no unit of a model_force"), "{error}");
+}

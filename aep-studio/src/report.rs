@@ -3,11 +3,13 @@
 use std::fmt::Write;
 
 use missing_physics::measurement::check::DataCheck;
+use missing_physics::report::Combinations;
 use missing_physics::{Discovery, Thresholds};
 
 use crate::html::{escape, section};
 use crate::plot;
 
+mod axes;
 mod compared;
 mod confirmation;
 mod data;
@@ -21,6 +23,8 @@ mod verdict;
 mod views;
 mod where_it_fails;
 
+pub use axes::{AxisPage, axes};
+
 /// Where the recording came from and what was asked of it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Source {
@@ -32,13 +36,21 @@ pub struct Source {
     pub command: String,
     /// What an effect had to gain.
     pub thresholds: Thresholds,
+    /// What parameters of the last model make together.
+    pub together: Combinations,
 }
 
 const STYLE: &str = include_str!("report/style.css");
 
 /// The page of a discovery: one file, nothing loaded from elsewhere, no scripts.
 pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
-    let sections = [
+    let sections = sections(discovery, source, check);
+    page(&format!("What the model lacks: {}", source.name), &sections, discovery, source)
+}
+
+/// What is told of a discovery.
+fn sections(discovery: &Discovery, source: &Source, check: &DataCheck) -> [String; 12] {
+    [
         verdict::head(discovery, source),
         ladder::section(discovery),
         confirmation::section(discovery),
@@ -48,11 +60,10 @@ pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String
         curves(discovery),
         ranking::section(discovery, source),
         compared::section(discovery, source),
-        parameters::section(discovery),
+        parameters::section(discovery, source),
         doubts::section(discovery),
         data::section(check, source),
-    ];
-    page(&format!("What the model lacks: {}", source.name), &sections, discovery, source)
+    ]
 }
 
 /// The page of a model on data, without a verdict.
@@ -64,21 +75,25 @@ pub fn comparison(discovery: &Discovery, source: &Source, check: &DataCheck) -> 
         residual::section(discovery),
         curves(discovery),
         ladder::section(discovery),
-        parameters::section(discovery),
+        parameters::section(discovery, source),
         data::section(check, source),
     ];
     page(&format!("How well the model fits: {}", source.name), &sections, discovery, source)
 }
 
 fn page(title: &str, sections: &[String], discovery: &Discovery, source: &Source) -> String {
+    let how = format!("Seed {}, {:.1} s, ", discovery.seed, discovery.wall_s);
+    page_of(title, sections, &foot_of(&how, &source.command))
+}
+
+fn page_of(title: &str, sections: &[String], foot: &str) -> String {
     format!(
         "<!doctype html>\n<html lang=en>\n<head><meta charset=utf-8>\
          <meta name=viewport content=\"width=device-width, initial-scale=1\">\
          <meta name=color-scheme content=\"light dark\">\n\
-         <title>{}</title>\n<style>\n{STYLE}</style></head>\n<body><main>\n{}{}</main></body></html>\n",
+         <title>{}</title>\n<style>\n{STYLE}</style></head>\n<body><main>\n{}{foot}</main></body></html>\n",
         escape(title),
         sections.concat(),
-        foot(discovery, source),
     )
 }
 
@@ -93,16 +108,11 @@ fn curves(discovery: &Discovery) -> String {
     section("curves", "Curves", "", &format!("<div class=figures>{figures}</div>"))
 }
 
-fn foot(discovery: &Discovery, source: &Source) -> String {
-    let mut foot = format!(
-        "<footer>Seed {}, {:.1} s, aep {}.",
-        discovery.seed,
-        discovery.wall_s,
-        env!("CARGO_PKG_VERSION")
-    );
-    if !source.command.is_empty() {
+fn foot_of(how: &str, command: &str) -> String {
+    let mut foot = format!("<footer>{how}aep {}.", env!("CARGO_PKG_VERSION"));
+    if !command.is_empty() {
         // Writing to a string cannot fail.
-        let _ = write!(foot, " Made by <code>{}</code>", escape(&source.command));
+        let _ = write!(foot, " Made by <code>{}</code>", escape(command));
     }
     foot + "</footer>"
 }

@@ -7,8 +7,12 @@ use missing_physics::report::{
     floor_key,
 };
 
+mod axes;
+mod combinations;
 mod compared;
 
+pub use axes::{AXES_HEADINGS, AxisResult, axis_row};
+pub use combinations::{combinations, not_alone};
 pub use compared::{
     COMPARED, COMPARED_HEADINGS, Compared, compared, comparisons, effects_of, needed, outcome,
     why_nothing,

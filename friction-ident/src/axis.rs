@@ -42,6 +42,68 @@ pub enum Quantity {
     Temperature,
 }
 
+/// What the drive's effort is measured in. A voltage or a current without a gain makes everything that holds a force a
+/// voltage or a current, and the mass a voltage per acceleration; no law changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Effort {
+    /// N, or N m on a rotary axis.
+    #[default]
+    #[serde(rename = "SI")]
+    Si,
+    /// V.
+    #[serde(rename = "V")]
+    Volt,
+    /// A.
+    #[serde(rename = "A")]
+    Ampere,
+}
+
+impl Effort {
+    /// The effort that a recorded force in `unit` is.
+    pub fn of(unit: &str) -> Self {
+        match unit {
+            "V" => Self::Volt,
+            "A" => Self::Ampere,
+            _ => Self::Si,
+        }
+    }
+
+    /// Whether it is a force or a torque.
+    pub fn is_si(self) -> bool {
+        self == Self::Si
+    }
+
+    /// Unit of `quantity` on an axis with this effort.
+    pub fn unit(self, axis: Axis, quantity: Quantity) -> &'static str {
+        let (volt, linear) = match self {
+            Self::Si => return axis.unit(quantity),
+            Self::Volt => (true, axis == Axis::Linear),
+            Self::Ampere => (false, axis == Axis::Linear),
+        };
+        match (quantity, volt, linear) {
+            (Quantity::Force, true, _) => "V",
+            (Quantity::Force, false, _) => "A",
+            (Quantity::Mass, true, true) => "V s^2/m",
+            (Quantity::Mass, true, false) => "V s^2/rad",
+            (Quantity::Mass, false, true) => "A s^2/m",
+            (Quantity::Mass, false, false) => "A s^2/rad",
+            (Quantity::Damping, true, true) => "V s/m",
+            (Quantity::Damping, true, false) => "V s/rad",
+            (Quantity::Damping, false, true) => "A s/m",
+            (Quantity::Damping, false, false) => "A s/rad",
+            (Quantity::Drag, true, true) => "V s^2/m^2",
+            (Quantity::Drag, true, false) => "V s^2/rad^2",
+            (Quantity::Drag, false, true) => "A s^2/m^2",
+            (Quantity::Drag, false, false) => "A s^2/rad^2",
+            (Quantity::Stiffness, true, true) => "V/m",
+            (Quantity::Stiffness, true, false) => "V/rad",
+            (Quantity::Stiffness, false, true) => "A/m",
+            (Quantity::Stiffness, false, false) => "A/rad",
+            _ => axis.unit(quantity),
+        }
+    }
+}
+
 /// Force, length and velocity of a small servo, in units of those of a small ball-screw table.
 const ROTARY_FORCE: f64 = 0.02;
 const ROTARY_LENGTH: f64 = 10.0;
@@ -99,6 +161,26 @@ mod tests {
         assert_eq!(Axis::Linear.unit(Quantity::Damping), "N s/m");
         assert_eq!(Axis::Rotary.unit(Quantity::Damping), "N m s/rad");
         assert_eq!(Axis::Rotary.unit(Quantity::Time), "s");
+    }
+
+    #[test]
+    fn a_voltage_or_a_current_is_never_called_a_force() {
+        for effort in [Effort::Volt, Effort::Ampere] {
+            for quantity in [
+                Quantity::Mass,
+                Quantity::Force,
+                Quantity::Damping,
+                Quantity::Drag,
+                Quantity::Stiffness,
+            ] {
+                for axis in [Axis::Linear, Axis::Rotary] {
+                    let unit = effort.unit(axis, quantity);
+                    assert!(!unit.contains('N') && !unit.contains("kg"), "{unit}");
+                }
+            }
+        }
+        assert_eq!(Effort::Volt.unit(Axis::Rotary, Quantity::Velocity), "rad/s");
+        assert_eq!(Effort::of("Nm"), Effort::Si);
     }
 
     #[test]

@@ -210,7 +210,8 @@ fn record(
     force: Vec<f64>,
     position: Vec<f64>,
 ) -> Result<Recording, RecordingError> {
-    let (newton, metre) = (model.axis().unit(Quantity::Force), model.axis().unit(Quantity::Length));
+    let (newton, metre) =
+        (model.effort().unit(model.axis(), Quantity::Force), model.axis().unit(Quantity::Length));
     let time = (0..force.len()).map(|k| k as f64 * reference.sample_time).collect();
     let channels = vec![
         Channel::new("force", newton, force),

@@ -34,7 +34,7 @@ pub mod windows;
 mod signal;
 mod simd;
 
-pub use axis::{Axis, Quantity};
+pub use axis::{Axis, Effort, Quantity};
 pub use challenge::Challenge;
 pub use closed_loop::{Controller, Pd, Setup, closed_loop};
 pub use driven::{Columns, MeasuredMotion, MotionError, columns_along, force_along};

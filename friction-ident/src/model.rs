@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::axis::{Axis, Quantity};
+use crate::axis::{Axis, Effort, Quantity};
 use crate::effects::beside::is_beside;
 use crate::effects::{Effect, Library, Parameter, Role, Slot, UnknownEffect};
 use crate::known::Known;
@@ -123,6 +123,7 @@ impl PartialEq for Term {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
     axis: Axis,
+    effort: Effort,
     mass: f64,
     /// For a model beside a given force.
     timing: Option<Timing>,
@@ -159,7 +160,8 @@ impl Model {
     /// [`ModelError::BadValue`] unless `mass` is finite and positive.
     pub fn new(axis: Axis, mass: f64) -> Result<Self, ModelError> {
         check_mass(mass)?;
-        Ok(Self { axis, mass, timing: None, terms: Vec::new(), known: Known::default() })
+        let (effort, known) = (Effort::default(), Known::default());
+        Ok(Self { axis, effort, mass, timing: None, terms: Vec::new(), known })
     }
 
     /// Effects beside a force that another model gives for every sample of a recording: without a mass of its own, so
@@ -170,10 +172,23 @@ impl Model {
     pub fn beside(axis: Axis, timing: Timing) -> Result<Self, ModelError> {
         let known = Known::default();
         let none = Some(Timing::default());
-        let mut model = Self { axis, mass: 0.0, timing: none, terms: Vec::new(), known };
+        let effort = Effort::default();
+        let mut model = Self { axis, effort, mass: 0.0, timing: none, terms: Vec::new(), known };
         model.set(SHIFT, timing.shift)?;
         model.set(SMOOTHING, timing.smoothing)?;
         Ok(model)
+    }
+
+    /// The same with an effort in another unit: its forces are voltages or currents.
+    #[must_use]
+    pub fn with_effort(mut self, effort: Effort) -> Self {
+        self.effort = effort;
+        self
+    }
+
+    /// What its forces are measured in.
+    pub fn effort(&self) -> Effort {
+        self.effort
     }
 
     /// The same with what is known of its parameters from elsewhere, for whoever fits it again.
@@ -300,12 +315,12 @@ impl Model {
         match self.timing {
             Some(_) if address == SHIFT => return Ok("s"),
             Some(_) if address == SMOOTHING => return Ok("s^2"),
-            None if address == MASS => return Ok(self.axis.unit(Quantity::Mass)),
+            None if address == MASS => return Ok(self.effort.unit(self.axis, Quantity::Mass)),
             _ => {}
         }
         let (term, index) = self.locate(address)?;
         let parameter = &self.terms[term].effect.about().parameters[index];
-        Ok(self.axis.unit(parameter.quantity))
+        Ok(self.effort.unit(self.axis, parameter.quantity))
     }
 
     /// The parameter's entry in its effect's table; none for the mass.

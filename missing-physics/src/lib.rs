@@ -30,6 +30,7 @@ mod discover;
 pub mod family;
 pub mod fit;
 pub mod measurement;
+mod predicted;
 pub mod report;
 pub mod statistics;
 mod task;
@@ -40,6 +41,7 @@ pub use family::{
     Coordinate, Fitted, FnFamily, ModelFamily, Parameter, Quantity, Regime, Role, Term,
 };
 pub use measurement::{Channel, Hold, Recording, RecordingError};
+pub use predicted::prediction_fit;
 pub use report::Discovery;
 pub use task::{DiscoverError, Event, Observer, Settings, Thresholds, model_of, terms};
 

@@ -3,7 +3,10 @@
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
-use aep_data::{Loaded, Mapping, Part, Source, hold_name, parse_hold, part, read, read_all};
+use aep_data::{
+    Axes, Loaded, LoadedAxes, Mapping, Part, Source, hold_name, parse_hold, part, read, read_all,
+    read_axes,
+};
 use missing_physics::Hold;
 
 use super::effects::{EffectNames, add_regressors, base_of, files_words, library};
@@ -119,6 +122,7 @@ impl MappingArgs {
             temperature: source(&self.temperature, &self.temperature_unit, None),
             enabled: source(&self.enabled, &None, None),
             model_force: source(&self.model_force, &self.model_force_unit, None),
+            axes: std::collections::BTreeMap::new(),
             regressors: self.regressor.iter().cloned().collect(),
             columns: read.cloned().collect(),
             interval_s: self.interval,
@@ -212,6 +216,14 @@ impl MappingArgs {
         self.cut(read(path, &self.mapping())?)
     }
 
+    /// Reads the axes in `paths`, which are pieces of one measurement.
+    pub fn read_axes(&self, paths: &[PathBuf], wanted: &Axes) -> Result<LoadedAxes, Failure> {
+        let mut loaded = read_axes(paths, &self.mapping(), wanted)?;
+        let cut = |(name, axis): (String, Loaded)| Ok((name, self.cut(axis)?));
+        loaded.axes = loaded.axes.into_iter().map(cut).collect::<Result<_, Failure>>()?;
+        Ok(loaded)
+    }
+
     /// Reads `paths` as the pieces of one recording.
     pub fn read_all(&self, paths: &[PathBuf]) -> Result<Loaded, Failure> {
         self.cut(read_all(paths, &self.mapping())?)
@@ -254,6 +266,11 @@ impl DataArgs {
     /// The files and how they are read, as they stand in a command.
     pub fn words(&self) -> String {
         words(&self.paths) + &self.mapping.words()
+    }
+
+    /// The files.
+    pub fn paths(&self) -> &[PathBuf] {
+        &self.paths
     }
 
     /// How the files are read.

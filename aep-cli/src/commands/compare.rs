@@ -3,19 +3,21 @@
 use std::path::{Path, PathBuf};
 
 use friction_ident::{Known, Model};
-use friction_ident::family::FrictionFamily;
-use missing_physics::{Thresholds, diagnosis};
+use friction_ident::family::{Decides, FrictionFamily};
+use missing_physics::{Fitted, Thresholds, diagnosis};
 use missing_physics::fit::Fit;
 use missing_physics::measurement::check::check;
+use missing_physics::report::Combinations;
 use missing_physics::report::View;
 
 use crate::app::Global;
-use crate::args::{DataArgs, LimitArgs, OutputArgs};
+use crate::args::{DataArgs, LimitArgs, OutputArgs, SeriesArgs};
 use crate::failure::Failure;
 use crate::output::{self, heading};
 use crate::report::{Kind, Report};
 use crate::steps;
 use crate::stop::Watch;
+use crate::{outputs, series};
 
 /// Compare a model with a measurement: errors in several views and where it fails
 ///
@@ -39,6 +41,8 @@ pub struct Args {
     limit: LimitArgs,
     #[command(flatten)]
     results: OutputArgs,
+    #[command(flatten)]
+    series: SeriesArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -50,6 +54,14 @@ Examples:
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let watch = args.limit.watch();
+    outputs::check(
+        &[args.data.paths(), &args.model].concat(),
+        &[
+            ("--json", args.results.json.as_deref()),
+            ("--html", args.results.html.as_deref()),
+            ("--series", args.series.path()),
+        ],
+    )?;
     let loaded = args.data.read()?;
     let models: Vec<Model> = if args.model.is_empty() {
         vec![steps::model_or_given(None, &loaded.recording)?]
@@ -85,9 +97,19 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         loaded: &loaded,
         check: &data,
         thresholds: Thresholds::default(),
+        together: Combinations::default(),
         more: vec![("models", in_json(&paths, &views))],
     };
-    let files = report.save(&args.results)?;
+    let mut files = report.save(&args.results)?;
+    if let Some(path) = args.series.path() {
+        let named = |(k, fit): (usize, &Fit)| {
+            let name = name(&paths[k]);
+            let again = paths[..k].iter().any(|path| self::name(path) == name);
+            (if again { format!("{name}_{}", k + 1) } else { name }, fit.model.clone())
+        };
+        let models: Vec<(String, Fitted)> = fits.iter().enumerate().map(named).collect();
+        files += &series::save(path, (&loaded.recording, &family), &models, Decides::Force)?;
+    }
     if global.quiet || args.results.own_stdout() {
         return watch.end();
     }

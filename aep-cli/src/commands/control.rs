@@ -1,7 +1,7 @@
 //! `aep control`: PD with and without friction compensation.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use friction_ident::control::{
     self, Compensator, ControlError, Deviation, Measures, Servo, Settings, Trial, paper, robustness,
@@ -136,7 +136,12 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 }
 
 fn case(args: &Args) -> Result<Case, Failure> {
-    let read = |path: &Option<PathBuf>| path.as_deref().map(steps::read_plant).transpose();
+    let plant = |path: &Path| {
+        let model = steps::read_plant(path)?;
+        steps::needs_force(&model, path)?;
+        Ok::<_, Failure>(model)
+    };
+    let read = |path: &Option<PathBuf>| path.as_deref().map(plant).transpose();
     let (model, plant) = (read(&args.model)?, read(&args.plant)?);
     let of_the_paper = model.is_none();
     let model = match model {

@@ -1,22 +1,27 @@
 //! `aep discover`: the main job.
 
+mod axes;
+
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use aep_data::Axes;
 use aep_studio::words;
-use missing_physics::{Discovery, Thresholds, discover};
+use friction_ident::family::Decides;
+use missing_physics::{Discovery, Fitted, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
-use missing_physics::report::{Confirmed, Verdict};
+use missing_physics::report::{Combinations, Confirmed, Verdict};
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs};
+use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs, SeriesArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::stop::Watch;
+use crate::{outputs, series};
 
 /// Find out which physical effect a model of the drive lacks
 ///
@@ -52,8 +57,15 @@ pub struct Args {
     /// Where the data cannot tell effects apart: write a motion that would (time and position)
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
+    /// The file has several axes: search `all`, or those of these numbers or names (`1,3` or `elbow`). Columns of an axis
+    /// are told by its number or name (`tau_1` and `q_1`, `elbow_torque` and `elbow_angle`); others with `{}` in its place:
+    /// --force 'u_{}' --position 'enc_{}'. The time limit holds for each axis; -o and --series need a `{}`, too
+    #[arg(long, value_name = "AXES", value_parser = axes::wanted)]
+    axes: Option<Axes>,
     #[command(flatten)]
     results: OutputArgs,
+    #[command(flatten)]
+    series: SeriesArgs,
     #[command(flatten)]
     run: RunArgs,
     #[command(flatten)]
@@ -82,13 +94,29 @@ Examples:
   aep discover run.csv --force u_V --force-gain 35.15 --position-unit mm
   aep discover DATA_EMPS.mat -o model.json               MATLAB; writes the model it found
   aep discover run.csv --model-force tau_model           what your own model lacks
+  aep discover arm.csv --axes all --html arm.html        six joints in one file, one table
   aep discover run.csv --explain                         everything that was compared, and why
+  aep discover run.csv --series points.parquet           prediction and residual of every rung, sample by sample
   aep discover run.csv --surrogates 20                   how often it would name what is not there
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
   aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    if let Some(wanted) = &args.axes {
+        return axes::run(args, wanted, global);
+    }
+    let inputs: Vec<PathBuf> = args.data.iter().chain(&args.validate).cloned().collect();
+    outputs::check(
+        &inputs,
+        &[
+            ("--output", args.output.as_deref()),
+            ("--json", args.results.json.as_deref()),
+            ("--html", args.results.html.as_deref()),
+            ("--series", args.series.path()),
+            ("--experiment", args.experiment.as_deref()),
+        ],
+    )?;
     let loaded = match args.data.as_slice() {
         [] => crate::example::load()?,
         paths => args.mapping.read_all(paths)?,
@@ -149,6 +177,18 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         proposal = propose(&family, last, rivals, path, args.run.seed)?;
         more.append(&mut proposal.more);
     }
+    let mut friction = Combinations::default();
+    if let Some(last) = discovery.ladder.last() {
+        friction = family.friction(&model_of(&family, last)?, Decides::Prediction);
+    }
+    let mut points = String::new();
+    if let Some(path) = args.series.path() {
+        progress.say("predicting every sample");
+        let rungs: Result<Vec<(String, Fitted)>, Failure> = (discovery.ladder.iter().enumerate())
+            .map(|(k, rung)| Ok((series::rung(k, &rung.added), model_of(&family, rung)?)))
+            .collect();
+        points = series::save(path, (&loaded.recording, &family), &rungs?, Decides::Prediction)?;
+    }
     drop(progress);
     let report = Report {
         kind: Kind::Discovery,
@@ -156,9 +196,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         loaded: &loaded,
         check: &data,
         thresholds: settings.thresholds,
+        together: friction.clone(),
         more,
     };
     let mut files = report.save(&args.results)?;
+    files += &points;
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, path)?;
     }
@@ -167,7 +209,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let next = if args.data.is_empty() { crate::example::next() } else { next(args, &discovery) };
     let files = if files.is_empty() { files } else { format!("\n{files}") };
-    let story = story(&discovery, &settings.thresholds, args.run.explain);
+    let story = story(&discovery, &settings.thresholds, &friction, args.run.explain);
     output::print(&(story + &confirmed + &alarms + &proposal.text + &files + &next))?;
     watch.end()
 }
@@ -186,7 +228,12 @@ fn save_model(
 }
 
 /// The loop as it went: where the base model failed, what was tried, what was gained.
-fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> String {
+fn story(
+    discovery: &Discovery,
+    thresholds: &Thresholds,
+    friction: &Combinations,
+    explain: bool,
+) -> String {
     let mut text = String::new();
     if let Some(base) = discovery.ladder.first() {
         text += &heading(&format!("Where the base model fails: {}", base.effects.join(" + ")));
@@ -225,6 +272,7 @@ fn story(discovery: &Discovery, thresholds: &Thresholds, explain: bool) -> Strin
     if let Some(last) = discovery.ladder.last() {
         text += &heading("Parameters of the last model");
         text += &output::parameters(last);
+        text += &output::together(friction);
     }
     text += &heading("The ladder");
     text += &output::ladder(discovery, "base model");

@@ -87,7 +87,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 
 fn model(args: &Args) -> Result<Model, Failure> {
     match &args.model {
-        Some(path) => steps::read_plant(path),
+        Some(path) => {
+            let model = steps::read_plant(path)?;
+            steps::needs_force(&model, path)?;
+            Ok(model)
+        }
         None => Ok(friction_ident::paper::table()?),
     }
 }

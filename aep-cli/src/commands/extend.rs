@@ -2,16 +2,19 @@
 
 use std::path::PathBuf;
 
+use friction_ident::family::Decides;
 use missing_physics::{Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
+use missing_physics::report::Combinations;
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{DataArgs, KnownArgs, LimitArgs, OutputArgs, known};
+use crate::args::{DataArgs, KnownArgs, LimitArgs, OutputArgs, SeriesArgs, known};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
+use crate::{outputs, series};
 
 /// Add an effect to a model, refit it, and print before and after
 #[derive(clap::Args)]
@@ -40,6 +43,8 @@ pub struct Args {
     limit: LimitArgs,
     #[command(flatten)]
     results: OutputArgs,
+    #[command(flatten)]
+    series: SeriesArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -49,6 +54,16 @@ Examples:
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let watch = args.limit.watch();
+    // A model may be extended in place, data are never written over.
+    outputs::check(
+        args.data.paths(),
+        &[
+            ("--output", Some(&args.output)),
+            ("--json", args.results.json.as_deref()),
+            ("--html", args.results.html.as_deref()),
+            ("--series", args.series.path()),
+        ],
+    )?;
     let loaded = args.data.read()?;
     let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;
     let added = known(&args.add.to_lowercase())?;
@@ -80,10 +95,17 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: Combinations::default(), more: Vec::new() };
     let mut files = report.save(&args.results)?;
     output::save(&args.output, &(extended.to_json()? + "\n"))?;
     files += &written("model", &args.output);
+    if let Some(path) = args.series.path() {
+        let named = |(name, fit): (&str, &missing_physics::fit::Fit)| {
+            (name.to_owned(), fit.model.clone())
+        };
+        let models = [("before", &before), ("after", &after)].map(named);
+        files += &series::save(path, (&loaded.recording, &family), &models, Decides::FittedForce)?;
+    }
     if quiet {
         return watch.end();
     }

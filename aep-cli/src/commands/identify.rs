@@ -3,18 +3,21 @@
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use friction_ident::family::FrictionFamily;
+use friction_ident::family::{Decides, FrictionFamily};
 use missing_physics::{Recording, Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
 
 use crate::app::Global;
-use crate::args::{Compared, DataArgs, EffectNames, KnownArgs, LimitArgs, OutputArgs, TimeArgs};
+use crate::args::{
+    Compared, DataArgs, EffectNames, KnownArgs, LimitArgs, OutputArgs, SeriesArgs, TimeArgs,
+};
 use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::steps::{self, ALGORITHMS};
 use crate::stop::Watch;
+use crate::{outputs, series};
 
 /// Identify the parameters of a model made of given effects
 ///
@@ -50,6 +53,8 @@ pub struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     results: OutputArgs,
+    #[command(flatten)]
+    series: SeriesArgs,
 }
 
 /// The identification by simulation.
@@ -79,6 +84,10 @@ fn in_time(
         output::save(path, &(found.found.model.to_json()? + "\n"))?;
         files += &written("model", path);
     }
+    if let Some(path) = args.series.path() {
+        let models = [("model".to_owned(), family.fitted(&found.found.model)?)];
+        files += &series::save(path, (recording, family), &models, Decides::Force)?;
+    }
     if quiet {
         return watch.end();
     }
@@ -96,6 +105,15 @@ Examples:
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let watch = args.limit.watch();
+    outputs::check(
+        args.data.paths(),
+        &[
+            ("--output", args.output.as_deref()),
+            ("--json", args.results.json.as_deref()),
+            ("--html", args.results.html.as_deref()),
+            ("--series", args.series.path()),
+        ],
+    )?;
     let loaded = args.data.read()?;
     let effects = args.data.mapping().base(args.effects.as_ref(), &loaded)?;
     let quiet = global.quiet || args.results.own_stdout();
@@ -112,14 +130,19 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let rung = diagnosis::rung(&family, &fit, &[]);
     let model = steps::model(&family, &rung)?;
     let discovery = diagnosis::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, &|| watch.is_over());
+    let friction = family.friction(&fit.model, Decides::FittedForce);
     drop(progress);
     let data = check(&loaded.recording);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: friction.clone(), more: Vec::new() };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         output::save(path, &(model.to_json()? + "\n"))?;
         files += &written("model", path);
+    }
+    if let Some(path) = args.series.path() {
+        let models = [("model".to_owned(), fit.model.clone())];
+        files += &series::save(path, (&loaded.recording, &family), &models, Decides::FittedForce)?;
     }
     if quiet {
         return watch.end();
@@ -127,6 +150,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let title = format!("{} by {} ({evaluations} evaluations)", effects.join(" + "), args.algorithm);
     let text = heading(&title)
         + &output::parameters(&rung)
+        + &output::together(&friction)
         + &heading("Errors")
         + &output::ladder(&discovery, "the model")
         + &output::notes(&discovery)

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use aep_data::Loaded;
-use friction_ident::{Axis, Input, Model, SimulationError, Start, Trajectory, simulate};
+use friction_ident::{Axis, Effort, Input, Model, SimulationError, Start, Trajectory, simulate};
 use missing_physics::{Channel, Recording};
 use missing_physics::measurement::quantity::quantity;
 
@@ -69,7 +69,8 @@ fn check_axis(model: &Model, loaded: &Loaded) -> Result<(), Failure> {
     let position = loaded.recording.channel("position");
     let rotary = position.is_some_and(|channel| channel.unit == "rad");
     if rotary == (model.axis() == Axis::Rotary) {
-        return Ok(());
+        let force = loaded.recording.channel("force");
+        return steps::same_effort(model, Effort::of(force.map_or("", |channel| &channel.unit)));
     }
     Err(steps::other_axis())
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use aep_studio::words;
 use missing_physics::suggest;
 use missing_physics::measurement::check::check;
+use missing_physics::report::Combinations;
 
 use crate::steps;
 use crate::app::Global;
@@ -95,6 +96,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         loaded: &loaded,
         check: &data,
         thresholds: settings.thresholds,
+        together: Combinations::default(),
         more,
     };
     let files = report.save(&args.results)?;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use aep_data::Loaded;
+use aep_data::{LeftOut, Loaded};
 use anstyle::AnsiColor;
 use missing_physics::Hold;
 use missing_physics::measurement::check::{DataCheck, Severity};
@@ -22,6 +22,9 @@ pub fn data_check(loaded: &Loaded, check: &DataCheck) -> String {
         let _ =
             writeln!(text, " {mark} the drive was switched off for {samples} samples: left out");
     }
+    if let Some(said) = left_out(&loaded.left_out) {
+        let _ = writeln!(text, " {} {said}", dim("·"));
+    }
     for finding in &check.findings {
         let mark = match finding.severity {
             Severity::Info => dim("·"),
@@ -31,6 +34,19 @@ pub fn data_check(loaded: &Loaded, check: &DataCheck) -> String {
         let _ = writeln!(text, " {mark} {}", finding.text);
     }
     text
+}
+
+/// How many rows are not among the samples.
+fn left_out(rows: &LeftOut) -> Option<String> {
+    let each = [
+        (rows.missing, "without a number in a column that is used"),
+        (rows.repeated, "with the time of the row before"),
+    ];
+    let told = each.iter().filter(|(count, _)| *count > 0);
+    let told: Vec<String> = told
+        .map(|(count, what)| format!("{count} {} {what}", if *count == 1 { "row" } else { "rows" }))
+        .collect();
+    (!told.is_empty()).then(|| format!("left out: {}", told.join(", ")))
 }
 
 fn overview(loaded: &Loaded, check: &DataCheck) -> String {

@@ -5,7 +5,9 @@ use std::fmt::Write;
 use aep_studio::words;
 use anstyle::AnsiColor;
 use missing_physics::measurement::quantity::{number, percent};
-use missing_physics::report::{Candidate, NamedError, RegimeShare, Rung, Verdict, Where};
+use missing_physics::report::{
+    Candidate, Combinations, NamedError, RegimeShare, Rung, Verdict, Where,
+};
 use missing_physics::{Discovery, Thresholds};
 
 use crate::args::library;
@@ -407,6 +409,26 @@ pub fn parameters(rung: &Rung) -> String {
         ]);
     }
     table.text()
+}
+
+/// What parameters make together, under their table.
+pub fn together(told: &Combinations) -> String {
+    if told.quantities.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&[
+        ("together", Align::Left),
+        ("", Align::Left),
+        ("value", Align::Right),
+        ("unit", Align::Left),
+        ("95 % interval", Align::Left),
+    ]);
+    for row in words::combinations(told) {
+        table.row(row);
+    }
+    let said = words::not_alone(told).map(|said| wrapped(&format!("{said}.")).join("\n "));
+    let said = said.map(|said| format!(" {}\n", dim(&said))).unwrap_or_default();
+    format!("\n{}{said}", table.text())
 }
 
 /// Place of the parameter called `name`: number of its effect, none for the mass, and its number there.

@@ -27,16 +27,39 @@ fn a_missing_column_is_named_with_those_present_and_the_flag() {
 #[test]
 fn an_ampere_is_no_newton_without_a_gain() {
     let desk = Desk::new();
-    desk.write("run.csv", recording(1, "time_s,current_A,position_m"));
-    desk.aep("discover run.csv --force current_A").refused(&["in A", "--force-gain G"]);
+    desk.challenge("nothing", 1, "c");
+    let text = desk.read("c/recording.csv").replace("force_N", "current_A");
+    desk.write("run.csv", &text);
+    let data = "run.csv --force current_A --hold zero-order";
+    let line = format!("identify {data} --effects coulomb,viscous,offset");
+    let run = desk.aep(&format!("{line} -o m.json --json i.json --html i.html --series s.csv"));
+    for unit in ["A s^2/m", "A s/m", "current error", "friction level forwards"] {
+        assert!(run.done().contains(unit), "{unit} is not in {}", run.out);
+    }
+    let json = desk.json("i.json");
+    assert!(json["error"]["current_rms_A"].is_object(), "{}", json["error"]);
+    for text in [run.out.as_str(), &json["parameters"].to_string(), &json["friction"].to_string()] {
+        for unit in [" N ", " N\n", "\"N\"", "\"N s/m\"", "\"kg\"", " kg "] {
+            assert!(!text.contains(unit), "'{unit}' is in {text}");
+        }
+    }
+    assert!(desk.read("s.csv").lines().next().unwrap().contains("model.residual_current_A"));
+    // The model stays in A, and says so where it does not belong.
+    assert_eq!(desk.json("m.json")["effort"], "A");
+    desk.aep(&format!("compare {data} --model m.json")).done();
+    desk.aep("compare c/recording.csv --model m.json").refused(&["in A", "in N", "--force-gain"]);
+    desk.aep("simulate --model m.json --input c/recording.csv -o o.csv").refused(&["in A"]);
+    desk.aep("control --model m.json --reference sine:5mm,0.5Hz").refused(&["commands a force"]);
+    desk.aep(&format!("simulate --model m.json --input {data} -o o.csv")).done();
+    assert!(desk.read("o.csv").starts_with("time_s,force_A,"));
 }
 
 #[test]
-fn nan_is_named_with_line_and_column() {
+fn text_in_place_of_a_number_is_named_with_line_and_column() {
     let desk = Desk::new();
-    desk.write("run.csv", recording(7, "0.05,NaN,0.1"));
+    desk.write("run.csv", recording(7, "0.05,1.2.3,0.1"));
     desk.aep("discover run.csv").refused(&[
-        "error: 'NaN' is not a number",
+        "error: '1.2.3' is not a number",
         "  run.csv, line 7, column 'force_N'",
         "hint: ",
     ]);

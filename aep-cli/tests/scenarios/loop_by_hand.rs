@@ -3,6 +3,36 @@
 use crate::harness::Desk;
 
 #[test]
+fn friction_is_told_as_level_and_viscosity_where_its_parameters_are_not_determined() {
+    let desk = Desk::new();
+    desk.challenge("nothing", 1, "c");
+    let line = "identify c/recording.csv --effects coulomb,viscous,offset,asymmetry";
+    let run = desk.aep(&format!("{line} --json i.json --html i.html"));
+    assert!(run.done().contains("friction level forwards"), "{}", run.out);
+    let truth = &desk.json("c/truth.json")["model"]["effects"];
+    let of = |effect: &str, parameter: &str| {
+        let found = truth.as_array().unwrap().iter().find(|e| e["effect"] == effect);
+        found.map_or(0.0, |effect| effect["parameters"][parameter].as_f64().unwrap())
+    };
+    let json = desk.json("i.json");
+    let told = |name: &str| {
+        let all = json["friction"]["quantities"].as_array().unwrap();
+        let found = all.iter().find(|quantity| quantity["name"] == name).unwrap();
+        assert_eq!(found["identifiable"], true, "{found}");
+        ["low", "value", "high"].map(|key| found[key].as_f64().unwrap())
+    };
+    let (level, offset) = (of("coulomb", "F_C"), of("offset", "F_0"));
+    for (name, value) in [("F_C+", level + offset), ("F_C-", level - offset)] {
+        let [low, found, high] = told(name);
+        assert!((found / value - 1.0).abs() < 0.03, "{name}: {found} {value}");
+        assert!(low < value && value < high && high - low < 0.1 * value, "{name} {low} {high}");
+    }
+    let [_, found, _] = told("F_v mean");
+    assert!((found / of("viscous", "F_v") - 1.0).abs() < 0.05, "{found}");
+    assert!(desk.read("i.html").contains("What they make together"));
+}
+
+#[test]
 fn the_loop_by_hand_finds_and_adds_the_hidden_effect() {
     let desk = Desk::new();
     desk.challenge("stribeck", 2, "c");

@@ -1,5 +1,6 @@
 //! The command line as users meet it: what they type, what they read, which files they get.
 
+mod axes;
 mod bad_input;
 mod control;
 mod discovery;
@@ -11,3 +12,4 @@ mod manual;
 mod optimizers;
 mod own_model;
 mod plant;
+mod series;

@@ -7,19 +7,20 @@ use missing_physics::measurement::quantity::number;
 use missing_physics::report::{Estimate, Rung};
 
 use crate::html::{self, escape, table};
+use crate::report::Source;
 use crate::words;
 
 const LEAD: &str = "Values of the last model with their 95 % intervals, then the values on each \
     rung: a parameter that moves when an effect is added had been standing in for it.";
 
 /// The section of the parameters.
-pub(super) fn section(discovery: &Discovery) -> String {
+pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
     let Some(last) = discovery.ladder.last().filter(|rung| !rung.parameters.is_empty()) else {
         return String::new();
     };
     let history =
         if discovery.ladder.len() > 1 { history(&discovery.ladder) } else { String::new() };
-    html::section("parameters", "Parameters", LEAD, &(values(last) + &history))
+    html::section("parameters", "Parameters", LEAD, &(values(last) + &together(source) + &history))
 }
 
 fn values(rung: &Rung) -> String {
@@ -37,6 +38,23 @@ fn values(rung: &Rung) -> String {
         })
         .collect();
     table(&["Parameter", "#Value", "Unit", "", "95 % interval"], &rows)
+}
+
+/// What parameters make together.
+fn together(source: &Source) -> String {
+    let told = words::combinations(&source.together);
+    if told.is_empty() {
+        return String::new();
+    }
+    let rows: Vec<Vec<String>> =
+        told.iter().map(|row| row.iter().map(|cell| escape(cell)).collect()).collect();
+    let note = words::not_alone(&source.together)
+        .map(|note| format!("<p>{}.</p>", escape(&note)))
+        .unwrap_or_default();
+    format!(
+        "<h3>What they make together</h3>{}{note}",
+        table(&["Quantity", "What it is", "#Value", "Unit", "95 % interval"], &rows)
+    )
 }
 
 fn interval(estimate: &Estimate) -> String {

@@ -5,15 +5,19 @@ use std::ops::Range;
 use missing_physics::{Coordinate, Recording};
 
 use super::preparation::Prepared;
-use crate::axis::{Axis, Quantity};
+use crate::axis::{Axis, Effort, Quantity};
 
 /// Two stretches of motion repeat each other where they differ by less than this share of the
 /// motion's standard deviation.
 const REPEATS: f64 = 0.02;
 
 /// The coordinates of the comparison grid.
-pub fn coordinates(p: &Prepared, axis: Axis, recording: &Recording) -> Vec<Coordinate> {
-    let unit = |quantity| axis.unit(quantity).to_owned();
+pub fn coordinates(
+    p: &Prepared,
+    (axis, effort): (Axis, Effort),
+    recording: &Recording,
+) -> Vec<Coordinate> {
+    let unit = |quantity| effort.unit(axis, quantity).to_owned();
     let direction = direction(p);
     let since = p.sample(&since_reversal(p));
     let position = p.sample(&p.position);

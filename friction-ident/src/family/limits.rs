@@ -4,7 +4,7 @@ use aep_core::Scale;
 use missing_physics::{Parameter, Role, Term};
 
 use super::preparation::Prepared;
-use crate::axis::{Axis, Quantity};
+use crate::axis::{Axis, Effort, Quantity};
 use crate::effects::{self, About, Effect, Periodic, Trials};
 use crate::signal::quantile;
 
@@ -20,6 +20,7 @@ const SATURATED: f64 = 0.2;
 /// Sizes of the recording.
 pub struct Limits {
     axis: Axis,
+    effort: Effort,
     interval: f64,
     force: Size,
     /// Size of the force that is exceeded in [`SATURATED`] of the time.
@@ -48,9 +49,10 @@ impl Size {
 }
 
 impl Limits {
-    pub fn of(prepared: &Prepared, axis: Axis, stroke: (f64, f64)) -> Self {
+    pub fn of(prepared: &Prepared, (axis, effort): (Axis, Effort), stroke: (f64, f64)) -> Self {
         Self {
             axis,
+            effort,
             interval: prepared.interval,
             force: Size::of(&prepared.force),
             usual_force: quantile(&prepared.force, 1.0 - SATURATED),
@@ -67,7 +69,7 @@ impl Limits {
         let typical = self.force.rms / self.acceleration.rms;
         let parameter = Parameter {
             name: "mass".into(),
-            unit: self.axis.unit(Quantity::Mass).into(),
+            unit: self.effort.unit(self.axis, Quantity::Mass).into(),
             role: Role::Amplitude,
             lower: 1e-6 * typical,
             upper: 20.0 * typical,
@@ -137,7 +139,7 @@ impl Limits {
         };
         Parameter {
             name: parameter.name.into(),
-            unit: self.axis.unit(parameter.quantity).into(),
+            unit: self.effort.unit(self.axis, parameter.quantity).into(),
             role: if amplitude { Role::Amplitude } else { Role::Shape },
             lower,
             upper,

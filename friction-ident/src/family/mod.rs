@@ -9,6 +9,7 @@ mod coordinates;
 pub mod experiment;
 mod filter;
 mod forms;
+mod friction;
 mod full_rate;
 mod generic;
 mod given;
@@ -16,6 +17,7 @@ mod hold;
 mod limits;
 mod own;
 mod plots;
+mod points;
 mod preparation;
 mod regimes;
 mod surrogates;
@@ -35,9 +37,10 @@ use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regi
 use rayon::prelude::*;
 
 pub use hold::HoldChoice;
+pub use points::{Decides, ModelPoints, Points};
 pub use preparation::{PreparationError, Prepared};
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Effort};
 use crate::driven::{MeasuredMotion, columns_along, force_along};
 use crate::effects::beside::{BESIDE, MODEL_FORCE};
 use crate::effects::free::{self, RIVALS, Span};
@@ -65,6 +68,7 @@ pub struct FrictionFamily {
     recording: Recording,
     prepared: Prepared,
     axis: Axis,
+    effort: Effort,
     library: Library,
     known: Known,
     effects: Vec<&'static dyn Effect>,
@@ -119,6 +123,8 @@ impl FrictionFamily {
         };
         let rotary = recording.channel("position").is_some_and(|channel| channel.unit == "rad");
         let axis = if rotary { Axis::Rotary } else { Axis::Linear };
+        let effort =
+            recording.channel("force").map_or(Effort::Si, |channel| Effort::of(&channel.unit));
         let stroke = prepared
             .position
             .iter()
@@ -131,18 +137,19 @@ impl FrictionFamily {
             .chain(RIVALS.iter().map(|free| free.effect))
             .map(|effect| effect.bound(recording).unwrap_or(effect))
             .collect();
-        let limits = limits::Limits::of(&prepared, axis, stroke);
+        let limits = limits::Limits::of(&prepared, (axis, effort), stroke);
         let mut terms = vec![if given { limits.timing() } else { limits.mass() }];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
         if given {
             given::as_deviations(&mut terms);
         }
         options.known.apply(&mut terms)?;
-        let coordinates = coordinates::coordinates(&prepared, axis, recording);
+        let coordinates = coordinates::coordinates(&prepared, (axis, effort), recording);
         let regimes = regimes::regimes(&prepared, stroke);
         let mut family = Self {
             recording: recording.clone(),
             axis,
+            effort,
             library: options.library.clone(),
             periodic: effects.iter().map(|effect| search::periodic(*effect)).collect(),
             known: options.known.clone(),
@@ -196,6 +203,11 @@ impl FrictionFamily {
         self.axis
     }
 
+    /// What its forces are measured in.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
     /// The prepared motion and force.
     pub fn prepared(&self) -> &Prepared {
         &self.prepared
@@ -228,7 +240,8 @@ impl FrictionFamily {
         let mut model = match &self.given {
             Some(_) => Model::beside(self.axis, timing)?,
             None => Model::new(self.axis, mass)?,
-        };
+        }
+        .with_effort(self.effort);
         for (effect, values) in effects {
             model = model.with_effect(effect)?;
             let mut values = values.iter();
@@ -470,10 +483,13 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn quantity(&self) -> Quantity {
-        match self.axis {
-            Axis::Linear => Quantity { name: "force".into(), unit: "N".into() },
-            Axis::Rotary => Quantity { name: "torque".into(), unit: "Nm".into() },
-        }
+        let (name, unit) = match (self.effort, self.axis) {
+            (Effort::Volt, _) => ("voltage", "V"),
+            (Effort::Ampere, _) => ("current", "A"),
+            (Effort::Si, Axis::Linear) => ("force", "N"),
+            (Effort::Si, Axis::Rotary) => ("torque", "Nm"),
+        };
+        Quantity { name: name.into(), unit: unit.into() }
     }
 
     fn time(&self) -> &[f64] {
@@ -666,7 +682,8 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn generic_term(&self, coordinate: &Coordinate, shape: &Generic) -> Option<String> {
-        generic::effect(coordinate, shape, &self.quantity().unit)
+        // Files of effects are in N or N m; what is fitted then has the unit of the effort.
+        generic::effect(coordinate, shape, self.axis.unit(crate::axis::Quantity::Force))
     }
 
     fn plots(&self, base: &Fitted, last: &Fitted) -> Vec<Plot> {

@@ -253,6 +253,39 @@ impl Prepared {
         self.grid.iter().map(|&k| self.kernel.at(&masked, k)).collect()
     }
 
+    /// Like [`Self::compare`], at every sample; no number where the axis rests or a piece ends.
+    pub fn compare_everywhere(&self, signal: &[f64]) -> Vec<f64> {
+        let masked: Vec<f64> = signal.iter().zip(&self.moving).map(|(s, m)| s * m).collect();
+        let edge = Kernel::reach_of(self.bandwidth * self.interval);
+        let mut compared = vec![f64::NAN; signal.len()];
+        for range in &self.segments {
+            let inner = range.start + edge..range.end.saturating_sub(edge);
+            for k in inner.filter(|k| self.kernel.at(&self.moving, *k) > MOVING) {
+                compared[k] = self.kernel.at(&masked, k);
+            }
+        }
+        compared
+    }
+
+    /// The sample nearest to a time within a piece.
+    pub fn nearest(&self, piece: usize, time: f64) -> usize {
+        let Some(range) = self.segments.get(piece).filter(|range| !range.is_empty()) else {
+            return 0;
+        };
+        let steps = ((time - self.time[range.start]) / self.interval).round().max(0.0) as usize;
+        // The interval of a piece differs a little from that of all.
+        let near = (range.start + steps).min(range.end - 1);
+        let away = |k: usize| (self.time[k] - time).abs();
+        let mut best = near;
+        while best > range.start && away(best - 1) < away(best) {
+            best -= 1;
+        }
+        while best + 1 < range.end && away(best + 1) < away(best) {
+            best += 1;
+        }
+        best
+    }
+
     /// Autocorrelation that the low-pass gives to white noise, at steps of the grid.
     pub fn colour(&self) -> Vec<f64> {
         self.kernel.colour(self.stride)

@@ -28,6 +28,19 @@ const NAMES: [&str; 7] = [
 
 /// The regimes of a motion on the comparison grid; those that it has.
 pub fn regimes(p: &Prepared, stroke: (f64, f64)) -> Vec<Regime> {
+    let all = names(p, stroke, &p.grid);
+    NAMES
+        .iter()
+        .map(|name| Regime {
+            name: (*name).to_owned(),
+            member: all.iter().map(|other| other == name).collect(),
+        })
+        .filter(|regime| regime.member.contains(&true))
+        .collect()
+}
+
+/// The regime of each of these samples.
+pub fn names(p: &Prepared, stroke: (f64, f64), samples: &[usize]) -> Vec<&'static str> {
     let highest = p.velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
     let square: f64 = p.acceleration.iter().map(|a| a * a).sum();
     let usual = (square / p.acceleration.len() as f64).sqrt();
@@ -46,15 +59,7 @@ pub fn regimes(p: &Prepared, stroke: (f64, f64)) -> Vec<Regime> {
             () => "uniform motion",
         }
     };
-    let all: Vec<&str> = p.grid.iter().map(|&k| name(k)).collect();
-    NAMES
-        .iter()
-        .map(|name| Regime {
-            name: (*name).to_owned(),
-            member: all.iter().map(|other| other == name).collect(),
-        })
-        .filter(|regime| regime.member.contains(&true))
-        .collect()
+    samples.iter().map(|&k| name(k)).collect()
 }
 
 /// Where a motion last started or turned.

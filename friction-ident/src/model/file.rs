@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Axis, Deserialize, Library, Model, ModelError, Serialize, Timing, address};
+use super::{Axis, Deserialize, Effort, Library, Model, ModelError, Serialize, Timing, address};
 use crate::effects::Effect;
 use crate::known::Known;
 
@@ -13,6 +13,9 @@ struct File {
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     schema: Option<String>,
     axis: Axis,
+    /// What forces are measured in; nothing for N or N m.
+    #[serde(default, skip_serializing_if = "is_si")]
+    effort: Effort,
     /// kg, or kg m^2 on a rotary axis.
     #[serde(alias = "inertia", default, skip_serializing_if = "Option::is_none")]
     mass: Option<f64>,
@@ -23,6 +26,11 @@ struct File {
     /// Parameters that are known from elsewhere.
     #[serde(default, skip_serializing_if = "Known::is_empty")]
     known: Known,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_si(effort: &Effort) -> bool {
+    effort.is_si()
 }
 
 #[derive(Serialize, Deserialize)]
@@ -62,7 +70,7 @@ impl Model {
                 model.set(&address(effect, name), *value)?;
             }
         }
-        Ok(model.with_known(file.known.clone()))
+        Ok(model.with_effort(file.effort).with_known(file.known.clone()))
     }
 
     /// MODEL.json, indented.
@@ -82,7 +90,8 @@ impl Model {
         let mass = self.timing.is_none().then_some(self.mass);
         let model_force = self.timing;
         let (known, effects) = (self.known.clone(), effects.collect());
-        File { schema: None, axis: self.axis, mass, model_force, effects, known }
+        let (axis, effort) = (self.axis, self.effort);
+        File { schema: None, axis, effort, mass, model_force, effects, known }
     }
 }
 
@@ -145,6 +154,15 @@ mod tests {
         assert!(syntax.contains("missing field `mass`"), "{syntax}");
         let mass = read(r#"{"axis":"linear","mass":-1,"effects":[]}"#).unwrap_err().to_string();
         assert!(mass.contains("'mass' is -1"), "{mass}");
+    }
+
+    #[test]
+    fn a_model_in_volts_stays_one() {
+        let model = Model::new(Axis::Linear, 2.0).unwrap().with_effort(Effort::Volt);
+        let text = model.to_json().unwrap();
+        assert!(text.contains("\"effort\": \"V\""), "{text}");
+        let back = read(&text).unwrap();
+        assert_eq!((back.unit("mass").unwrap(), back == model), ("V s^2/m", true));
     }
 
     #[test]

@@ -37,6 +37,10 @@ pub fn schema(library: &Library) -> Value {
                 "enum": ["linear", "rotary"],
                 "description": "linear: N, m, kg; rotary: N m, rad, kg m^2",
             },
+            "effort": {
+                "enum": ["SI", "V", "A"],
+                "description": "what forces are measured in: N or N m where nothing is said, else a voltage or a current; the mass is then V s^2/m, F_v V s/m, and so on",
+            },
             "mass": mass,
             "inertia": mass,
             "model_force": {

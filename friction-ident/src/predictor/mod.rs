@@ -53,6 +53,9 @@ const PIECE: f64 = 1.0;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Fewest and most plants that advance together.
 const LANES: (usize, usize) = (8, 32);
+/// Why samples do not count.
+const REPEATED: &str = "repeats the sample before it while the axis moves";
+const UNSETTLED: &str = "start of a piece";
 /// Plants in the widest vector.
 const VECTOR: usize = 8;
 
@@ -254,6 +257,27 @@ impl Predictor {
         let batches: Vec<Vec<Vec<f64>>> =
             models.par_chunks(lanes).map(|batch| self.batch(batch)).collect();
         batches.into_iter().flatten().collect()
+    }
+
+    /// The position that a model shows at each sample of the recording, one sample ahead; no number at the first of a
+    /// piece, or anywhere where the model cannot be simulated.
+    pub fn shown(&self, model: &Model, setting: usize) -> Vec<f64> {
+        let mut shown = vec![f64::NAN; self.time.len()];
+        let seen = self.follow(&[(model.clone(), setting)], |n, _, step| {
+            shown[n] = self.position[n] - step.error;
+        });
+        if seen.is_err() {
+            shown.fill(f64::NAN);
+        }
+        shown
+    }
+
+    /// Why each sample does not count; nothing for those that do.
+    pub fn left_out(&self) -> Vec<Option<&'static str>> {
+        let why = |k: usize| if self.stale[k] { REPEATED } else { UNSETTLED };
+        let mut left_out: Vec<_> = (0..self.time.len()).map(|k| Some(why(k))).collect();
+        self.counted.iter().for_each(|k| left_out[*k] = None);
+        left_out
     }
 
     fn batch(&self, trials: &[(Model, usize)]) -> Vec<Vec<f64>> {

@@ -64,45 +64,79 @@ fn estimate(parameter: &Parameter, value: f64, error: f64) -> Estimate {
 
 /// Standard errors on each parameter's own scale; infinite where the data do not see it.
 fn standard_errors(fit: &Fit, weights: &[f64]) -> Vec<f64> {
-    let (points, parameters) = (fit.residual.len(), fit.jacobian.len());
-    let lengths: Vec<f64> = fit
-        .jacobian
-        .iter()
-        .map(|column| crate::fit::weighted_square(column, weights).sqrt())
-        .collect();
-    let seen: Vec<usize> = (0..parameters).filter(|&k| lengths[k] > 0.0).collect();
-    let row = |i: usize| {
-        DVector::from_iterator(
-            seen.len(),
-            seen.iter().map(|&k| fit.jacobian[k][i] * weights[i] / lengths[k]),
-        )
-    };
-    let mut normal = DMatrix::zeros(seen.len(), seen.len());
-    let mut scores = vec![DVector::zeros(seen.len()); BLOCKS];
-    let mut square = 0.0;
-    for i in 0..points {
-        let jacobian = row(i);
-        let residual = fit.residual[i] * weights[i];
-        square += residual * residual;
-        normal.ger(1.0, &jacobian, &jacobian, 1.0);
-        scores[i * BLOCKS / points].axpy(residual, &jacobian, 1.0);
-    }
-    let used = weights.iter().filter(|weight| **weight > 0.0).count();
-    let freedom = used.saturating_sub(seen.len()).max(1) as f64;
-    let mut omega = DMatrix::zeros(seen.len(), seen.len());
-    for score in &scores {
-        omega.ger(1.0, score, score, 1.0);
-    }
-    let mut errors = vec![f64::INFINITY; parameters];
-    // Directions that the data do not see at all get a variance that is large but finite, so that
-    // those it sees keep theirs.
-    let unseen = DMatrix::identity(seen.len(), seen.len()) * UNSEEN;
-    let Some(inverse) = (normal + unseen).cholesky().map(|c| c.inverse()) else { return errors };
-    let correction = BLOCKS as f64 / (BLOCKS - 1) as f64;
-    let sandwich = &inverse * omega * &inverse * correction;
-    for (position, &k) in seen.iter().enumerate() {
-        let classical = inverse[(position, position)] * square / freedom;
-        errors[k] = sandwich[(position, position)].max(classical).sqrt() / lengths[k];
+    let mut errors = vec![f64::INFINITY; fit.jacobian.len()];
+    let Some(covariance) = Covariance::of(fit, weights) else { return errors };
+    for (position, &k) in covariance.seen.iter().enumerate() {
+        let classical = covariance.classical[(position, position)];
+        let sandwich = covariance.sandwich[(position, position)];
+        errors[k] = sandwich.max(classical).sqrt() / covariance.lengths[k];
     }
     errors
+}
+
+/// What a fit says of all parameters together: parameters that are not determined one by one may well be in their
+/// combinations.
+#[derive(Clone, Debug)]
+pub struct Covariance {
+    /// Parameters that the data see.
+    seen: Vec<usize>,
+    lengths: Vec<f64>,
+    sandwich: DMatrix<f64>,
+    classical: DMatrix<f64>,
+}
+
+impl Covariance {
+    /// Of the parameters of a fit, each on its own scale; `weights` are those of the fit.
+    pub fn of(fit: &Fit, weights: &[f64]) -> Option<Self> {
+        let (points, parameters) = (fit.residual.len(), fit.jacobian.len());
+        let lengths: Vec<f64> = fit
+            .jacobian
+            .iter()
+            .map(|column| crate::fit::weighted_square(column, weights).sqrt())
+            .collect();
+        let seen: Vec<usize> = (0..parameters).filter(|&k| lengths[k] > 0.0).collect();
+        let row = |i: usize| {
+            DVector::from_iterator(
+                seen.len(),
+                seen.iter().map(|&k| fit.jacobian[k][i] * weights[i] / lengths[k]),
+            )
+        };
+        let mut normal = DMatrix::zeros(seen.len(), seen.len());
+        let mut scores = vec![DVector::zeros(seen.len()); BLOCKS];
+        let mut square = 0.0;
+        for i in 0..points {
+            let jacobian = row(i);
+            let residual = fit.residual[i] * weights[i];
+            square += residual * residual;
+            normal.ger(1.0, &jacobian, &jacobian, 1.0);
+            scores[i * BLOCKS / points].axpy(residual, &jacobian, 1.0);
+        }
+        let used = weights.iter().filter(|weight| **weight > 0.0).count();
+        let freedom = used.saturating_sub(seen.len()).max(1) as f64;
+        let mut omega = DMatrix::zeros(seen.len(), seen.len());
+        for score in &scores {
+            omega.ger(1.0, score, score, 1.0);
+        }
+        // Directions that the data do not see at all get a variance that is large but finite, so that
+        // those it sees keep theirs.
+        let unseen = DMatrix::identity(seen.len(), seen.len()) * UNSEEN;
+        let inverse = (normal + unseen).cholesky().map(|c| c.inverse())?;
+        let correction = BLOCKS as f64 / (BLOCKS - 1) as f64;
+        let sandwich = &inverse * omega * &inverse * correction;
+        let classical = inverse.map(|value| value * square / freedom);
+        Some(Self { seen, lengths, sandwich, classical })
+    }
+
+    /// Half-width of the 95 % interval of a quantity with these derivatives by the parameters, each on its own scale;
+    /// infinite where it depends on one that the data do not see.
+    pub fn reach(&self, derivatives: &[f64]) -> f64 {
+        let sees = |k: &usize| self.seen.contains(k);
+        if (0..derivatives.len()).any(|k| derivatives[k] != 0.0 && !sees(&k)) {
+            return f64::INFINITY;
+        }
+        let scaled = self.seen.iter().map(|k| derivatives[*k] / self.lengths[*k]);
+        let along = DVector::from_iterator(self.seen.len(), scaled);
+        let variance = |of: &DMatrix<f64>| (of * &along).dot(&along);
+        STUDENT * variance(&self.sandwich).max(variance(&self.classical)).max(0.0).sqrt()
+    }
 }

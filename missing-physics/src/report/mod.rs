@@ -4,6 +4,7 @@
 pub const SCHEMA: &str = include_str!("../../schema/discovery.schema.json");
 
 mod candidate;
+mod combination;
 mod confirmation;
 mod decision;
 mod diagnosis;
@@ -19,6 +20,7 @@ mod verdict;
 mod view;
 
 pub use candidate::{Candidate, DetectionLimit, NamedValue};
+pub use combination::{Combination, Combinations};
 pub use confirmation::{Confirmation, Confirmed};
 pub use decision::{Decision, Outcome};
 pub use diagnosis::{Diagnosis, Independence, Line, Whiteness};

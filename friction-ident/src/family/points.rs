@@ -1,0 +1,177 @@
+//! A recording point by point: what was measured, and what models predict at each sample.
+
+use missing_physics::ahead::fit::best_setting;
+use missing_physics::diagnosis::fitted_blocks;
+use missing_physics::{Fitted, ModelFamily};
+
+use super::{FrictionFamily, regimes};
+
+/// Why a sample takes no part in a comparison of forces.
+const AT_REST: &str = "at rest, where friction holds any force";
+const AT_AN_END: &str = "end of a piece";
+const HELD_OUT: &str = "held out of the fit";
+
+/// What decides which samples take part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Decides {
+    /// Prediction errors one sample ahead, where the family has them.
+    Prediction,
+    /// The force along the measured motion.
+    Force,
+    /// The same, of which some blocks are held out.
+    FittedForce,
+}
+
+/// All samples of a recording, in order; no number where nothing is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    /// The piece of the recording, from 1.
+    pub piece: Vec<i64>,
+    /// The force as it is compared: low-passed, without what is at rest.
+    pub compared_force: Vec<f64>,
+    /// The regime of the motion.
+    pub regime: Vec<&'static str>,
+    /// Why a sample takes no part in what decides; nothing where it does.
+    pub left_out: Vec<Option<&'static str>>,
+    /// What each model predicts.
+    pub models: Vec<ModelPoints>,
+}
+
+/// What a model predicts at each sample.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelPoints {
+    /// The position one sample ahead; empty where the family does not predict so.
+    pub position: Vec<f64>,
+    /// The force along the measured motion, to be held against [`Points::compared_force`].
+    pub force: Vec<f64>,
+}
+
+impl FrictionFamily {
+    /// The recording point by point, with what `models` predict. Where the data hardly tell what the force does between
+    /// samples, it is read in the way in which the last model predicts better, as a search reads it.
+    pub fn points(&self, models: &[Fitted], decides: Decides) -> Points {
+        let last = models.last();
+        match (&self.other_hold, last) {
+            (Some(other), Some(last)) if other.size(last) < self.size(last) => {
+                other.points_as_read(models, decides)
+            }
+            _ => self.points_as_read(models, decides),
+        }
+    }
+
+    /// Prediction error of a model on a part of the recording, at the setting that suits it best.
+    fn size(&self, model: &Fitted) -> f64 {
+        let Some(ahead) = self.ahead_in_part().or_else(|| self.ahead()) else {
+            return f64::INFINITY;
+        };
+        let setting = best_setting(&*ahead, model);
+        let errors = ahead.errors(&[(model.clone(), setting)]).swap_remove(0);
+        missing_physics::ahead::statistics::rms(&errors, f64::INFINITY)
+    }
+
+    fn points_as_read(&self, models: &[Fitted], decides: Decides) -> Points {
+        let p = &self.prepared;
+        let recording = &self.recording;
+        let near: Vec<usize> = (recording.segments().iter().enumerate())
+            .flat_map(|(piece, range)| {
+                range.clone().map(move |k| p.nearest(piece, recording.time()[k]))
+            })
+            .collect();
+        let here = |values: &[f64]| -> Vec<f64> { near.iter().map(|k| values[*k]).collect() };
+        let force = here(&p.compare_everywhere(&p.force));
+        let each = models.iter().map(|model| ModelPoints {
+            position: self.shown(model),
+            force: self
+                .required(model)
+                .map_or_else(|_| vec![f64::NAN; near.len()], |f| here(&p.compare_everywhere(&f))),
+        });
+        let models = each.collect();
+        let left_out = match (&self.ahead, decides) {
+            (Some(ahead), Decides::Prediction) => ahead.predictor.left_out(),
+            _ => self.left_out_of_forces(&near, &force, decides),
+        };
+        let regime = regimes::names(p, self.stroke, &near);
+        let pieces = recording.segments().iter().enumerate();
+        let piece = pieces.flat_map(|(piece, range)| vec![piece as i64 + 1; range.len()]).collect();
+        Points { piece, compared_force: force, regime, left_out, models }
+    }
+
+    /// The position that a model shows one sample ahead.
+    fn shown(&self, model: &Fitted) -> Vec<f64> {
+        let (Some(ahead), Some(view)) = (&self.ahead, self.ahead()) else { return Vec::new() };
+        let setting = best_setting(&*view, model);
+        let plant = self.model(model);
+        plant.map_or_else(
+            |_| vec![f64::NAN; self.recording.len()],
+            |plant| ahead.predictor.shown(&plant, setting),
+        )
+    }
+
+    fn left_out_of_forces(
+        &self,
+        near: &[usize],
+        force: &[f64],
+        decides: Decides,
+    ) -> Vec<Option<&'static str>> {
+        let p = &self.prepared;
+        let fitted = fitted_blocks(self);
+        let is_held_out = |k: usize| {
+            let after = p.grid.partition_point(|point| *point < k).min(p.grid.len() - 1);
+            let before = after.saturating_sub(1);
+            let nearer = if p.grid[after].abs_diff(k) <= p.grid[before].abs_diff(k) {
+                after
+            } else {
+                before
+            };
+            decides == Decides::FittedForce && fitted[nearer] == 0.0
+        };
+        let each = near.iter().zip(force).map(|(&k, force)| match () {
+            () if force.is_nan() && p.moving[k] == 0.0 => Some(AT_REST),
+            () if force.is_nan() => Some(AT_AN_END),
+            () if is_held_out(k) => Some(HELD_OUT),
+            () => None,
+        });
+        each.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::challenge::{Hide, Level, generate};
+    use crate::family::Options;
+
+    #[test]
+    fn the_model_that_made_a_recording_is_as_near_to_it_as_the_encoder_allows() {
+        let made = generate(&Hide::Nothing, 1, Level::Clear).unwrap();
+        let family = FrictionFamily::new(&made.recording, &Options::default()).unwrap();
+        let truth = family.fitted(&made.truth.model).unwrap();
+        let points = family.points(&[truth], Decides::Prediction);
+        let position = made.recording.require("position").unwrap();
+        let mut errors: Vec<f64> = (0..position.len())
+            .filter(|k| points.left_out[*k].is_none())
+            .map(|k| (position[k] - points.models[0].position[k]).abs())
+            .collect();
+        assert!(errors.len() > position.len() / 2);
+        errors.sort_unstable_by(f64::total_cmp);
+        assert!(errors[errors.len() / 2] < 2e-6, "{}", errors[errors.len() / 2]);
+        let force = &points.models[0].force;
+        let off = |k: &usize| (points.compared_force[*k] - force[*k]).abs();
+        let known: Vec<usize> = (0..force.len()).filter(|k| force[*k].is_finite()).collect();
+        let mean = known.iter().map(off).sum::<f64>() / known.len() as f64;
+        let size = known.iter().map(|k| force[*k].abs()).sum::<f64>() / known.len() as f64;
+        assert!(mean < 0.05 * size, "{mean} of {size}");
+    }
+
+    #[test]
+    fn what_is_at_rest_or_held_out_takes_no_part_in_a_fit_of_forces() {
+        let made = generate(&Hide::Nothing, 1, Level::Clear).unwrap();
+        let family = FrictionFamily::new(&made.recording, &Options::default()).unwrap();
+        let points = family.points(&[], Decides::FittedForce);
+        for why in [AT_REST, HELD_OUT] {
+            assert!(points.left_out.contains(&Some(why)), "{why}");
+        }
+        let all = points.left_out.iter().zip(&points.regime);
+        assert!(all.clone().all(|(why, regime)| *why != Some(AT_REST) || *regime == "stick"));
+    }
+}
