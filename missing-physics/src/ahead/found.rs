@@ -131,6 +131,7 @@ impl Found {
     ) {
         let top = self.rungs.last().unwrap_or(&self.base);
         self.places = local::places(ahead, top, thresholds.local, &family.quantity().unit);
+        self.places.splice(0..0, ahead.remains(&top.model, thresholds.complete));
         self.places.splice(0..0, self.rival.clone());
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }

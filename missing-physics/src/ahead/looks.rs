@@ -8,8 +8,9 @@ use super::beam::{Climb, Search, Tell};
 use super::fit::Fitter;
 use super::found::Found;
 use super::report::Report;
+use super::residuals::Residuals;
 use super::{Ahead, reading};
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 use crate::fit;
 use crate::report::Discovery;
 use crate::task::{Event, Observer, Settings, Thresholds};
@@ -71,6 +72,11 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
         Some(Self { family, whole: family.ahead()?, part: family.ahead_in_part() })
     }
 
+    /// That of a family that only gives residuals, whose noise the residual of `base` shows.
+    pub fn of_residuals(family: &'a F, base: &Fitted) -> Self {
+        Self { family, whole: Box::new(Residuals::new(family, base)), part: None }
+    }
+
     /// What is searched.
     fn searched(&self) -> &dyn Ahead {
         self.part.as_deref().unwrap_or(&*self.whole)
@@ -117,10 +123,11 @@ impl Run<'_> {
         there: Option<&'b (Reading<'b, F>, f64)>,
     ) -> Sought<'b, F> {
         let (reading, mut found) = self.found(here, there);
+        let thresholds = self.thresholds(&*reading.whole);
         if reading.part.is_some() {
-            found.confirm(reading.family, &*reading.whole, &self.thresholds());
+            found.confirm(reading.family, &*reading.whole, &thresholds);
         }
-        found.judge(reading.family, &*reading.whole, &self.thresholds());
+        found.judge(reading.family, &*reading.whole, &thresholds);
         Sought { reading, found }
     }
 
@@ -163,7 +170,7 @@ impl Run<'_> {
                     && ![term, main].iter().any(|t| excluded.contains(t))
             })
             .collect();
-        let thresholds = self.thresholds().in_part(ahead.share());
+        let thresholds = self.thresholds(ahead).in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
         let base = if let Some(near) = &self.settings.start {
             search.base_near(near.clone())
@@ -177,8 +184,9 @@ impl Run<'_> {
         (search, climb)
     }
 
-    fn thresholds(&self) -> Thresholds {
-        let thresholds = self.settings.thresholds;
+    /// Those that errors of all of the recording are asked.
+    fn thresholds(&self, ahead: &dyn Ahead) -> Thresholds {
+        let thresholds = self.settings.thresholds.in_part(ahead.asked());
         Thresholds { most: thresholds.most.min(self.settings.most), ..thresholds }
     }
 

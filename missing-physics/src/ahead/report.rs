@@ -260,7 +260,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             if leverage <= 0.0 || self.family.form_of(promise.term).is_some() {
                 continue;
             }
-            let size = (self.settings.thresholds.better / leverage).sqrt();
+            let better = self.settings.thresholds.in_part(self.ahead.asked()).better;
+            let size = (better / leverage).sqrt();
             let Some(start) = promise.starts.first() else { continue };
             let values = &start.values[start.range(self.family, start.terms.len() - 1)];
             limits.insert(term.name.clone(), detection_limit(term, values, amplitude, size));

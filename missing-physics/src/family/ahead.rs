@@ -26,6 +26,17 @@ pub trait Ahead: Sync {
         1.0
     }
 
+    /// Share of what an effect must gain that these errors are asked for: few errors can gain no more.
+    fn asked(&self) -> f64 {
+        1.0
+    }
+
+    /// What a model leaves that its errors one sample ahead do not show, in words: with it no model is complete, which
+    /// may err `complete` times as much as the sensors make it.
+    fn remains(&self, _model: &Fitted, _complete: f64) -> Option<String> {
+        None
+    }
+
     /// What is wrong with the recording itself, in words: with it no model is complete.
     fn faults(&self) -> Option<String> {
         None
