@@ -91,7 +91,9 @@ fn signal(seed: u64, memory: f64, hidden: Hidden) -> Discovery {
     let x: Vec<f64> = time
         .iter()
         .map(|t| {
-            wave(0.6, 1.3, phases[0], t) + wave(0.4, 3.1, phases[1], t) + wave(0.3, 7.7, phases[2], t)
+            wave(0.6, 1.3, phases[0], t)
+                + wave(0.4, 3.1, phases[1], t)
+                + wave(0.3, 7.7, phases[2], t)
         })
         .collect();
     let mut extra = vec![0.0; POINTS];
@@ -232,10 +234,20 @@ fn tank(seed: u64, memory: f64, hidden: Hidden) -> Discovery {
             .amplitude("h", "m/s", (0.0, 1.0), 0.1)
             .shape("c", "1/s", (5e-3, 0.5), 0.03)
             .always(),
-        Term::new("square", "turbulent loss", "-q y |y|").amplitude("q", "1/m s", (0.0, 0.2), 0.005),
+        Term::new("square", "turbulent loss", "-q y |y|").amplitude(
+            "q",
+            "1/m s",
+            (0.0, 0.2),
+            0.005,
+        ),
         Term::new("delay", "a long pipe", "u(t - d)").shape("d", "s", (0.01, 30.0), 1.0),
         Term::new("pump-lag", "a slow pump", "T q' = u - q").shape("T", "s", (0.05, 60.0), 1.0),
-        Term::new("dead-zone", "a pump that sticks", "max(u - z, 0)").shape("z", "V", (1e-3, 1.0), 0.1),
+        Term::new("dead-zone", "a pump that sticks", "max(u - z, 0)").shape(
+            "z",
+            "V",
+            (1e-3, 1.0),
+            0.1,
+        ),
         Term::new("offset", "the sensor's zero", "o").amplitude("o", "m", (-9.0, 9.0), 0.1),
         Term::new("drift", "a sensor that drifts", "d t").amplitude("d", "m/s", (-1.0, 1.0), 1e-3),
     ];
@@ -271,7 +283,13 @@ fn found<F: ModelFamily>(family: &F, base: &[&str], seed: u64) -> Discovery {
 }
 
 /// One row of the table.
-fn row(name: &str, make: fn(u64, f64, Hidden) -> Discovery, memory: f64, hidden: Hidden, seeds: u64) {
+fn row(
+    name: &str,
+    make: fn(u64, f64, Hidden) -> Discovery,
+    memory: f64,
+    hidden: Hidden,
+    seeds: u64,
+) {
     let all: Vec<Discovery> =
         (0..seeds).into_par_iter().map(|seed| make(9000 + seed, memory, hidden)).collect();
     let names: &[&str] = match hidden {
@@ -320,7 +338,12 @@ fn main() {
     ];
     for size in [0.2, 0.5, 1.0, 3.0] {
         for one in [&["square"], &["sine"], &["step"]] {
-            rows.push((format!("signal: {} {size}", one[0]), signal, Hidden::Listed(one, size), seeds));
+            rows.push((
+                format!("signal: {} {size}", one[0]),
+                signal,
+                Hidden::Listed(one, size),
+                seeds,
+            ));
         }
         rows.push((
             format!("signal: sine + cosine {size}"),

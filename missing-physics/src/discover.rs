@@ -1,15 +1,14 @@
-//! The loop: fit, see where it fails, screen, add, refit, until nothing more is gained.
+//! The ways in: what is asked becomes a search, whatever a family can say of a recording.
 
 use std::time::Instant;
 
 use crate::ahead;
-use crate::climb::Search;
 use crate::family::ModelFamily;
 use crate::fit;
 use crate::report::Discovery;
 use crate::task::{DiscoverError, Event, Observer, Settings, terms};
 
-/// Fits the base model, then adds what is missing until nothing is gained on held-out data.
+/// Fits the base model, then searches the set of effects that it lacks, by errors one sample ahead.
 ///
 /// # Errors
 /// When a name in the settings is unknown.
@@ -23,9 +22,6 @@ pub fn discover<F: ModelFamily + ?Sized>(
     if let Some(reading) = ahead::Reading::of(family) {
         let sets = (base.as_slice(), excluded.as_slice());
         return Ok(ahead::discover(&reading, settings, sets, observer));
-    }
-    if std::env::var("OLD_WAY").is_ok() {
-        return Ok(Search::new(family, settings, &base, excluded, observer).run());
     }
     Ok(by_residuals(family, settings, (&base, &excluded), observer))
 }

@@ -34,8 +34,10 @@ impl Autoregression {
     pub fn of(values: &[f64], runs: &[Range<usize>], order: usize, most: f64) -> Self {
         let product = |lag: usize| -> f64 {
             let long = runs.iter().filter(|run| run.len() > lag);
-            long.map(|run| dot(&values[run.start + lag..run.end], &values[run.start..run.end - lag]))
-                .sum()
+            long.map(|run| {
+                dot(&values[run.start + lag..run.end], &values[run.start..run.end - lag])
+            })
+            .sum()
         };
         Self::from_products(&(0..=order).map(product).collect::<Vec<f64>>(), most)
     }

@@ -149,7 +149,12 @@ impl Found {
         let still = lacks(top).zip(lacks(&self.base)).is_some_and(|((rms, band), (before, _))| {
             rms > thresholds.local * band && rms * rms > MOST * before * before
         });
-        if !still && local::faults(&top.errors).is_none() && ahead.faults().is_none() {
+        let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
+        if !still
+            && no_cause.is_none()
+            && local::faults(&top.errors).is_none()
+            && ahead.faults().is_none()
+        {
             return;
         }
         let force = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
@@ -161,12 +166,14 @@ impl Found {
             self.added.iter().map(|term| family.terms()[*term].name.as_str()).collect();
         self.notes.push(format!(
             "nearest: {} would take the prediction error from {:.2} to {:.2} times what the sensors make{force}: \
-             that is not the cause",
+             that is not the cause{}",
             names.join(" + "),
             self.base.scale / ahead.budget(),
             top.scale / ahead.budget(),
+            no_cause.map_or_else(String::new, |why| format!(" ({why})")),
         ));
         self.places = local::places(ahead, &self.base, thresholds.local, &family.quantity().unit);
+        self.places.splice(0..0, ahead.remains(&self.base.model, thresholds.complete));
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();

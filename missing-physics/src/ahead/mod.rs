@@ -2,7 +2,8 @@
 //!
 //! Everything here rests on the prediction errors of models, each at the process noise that suits it best, in
 //! units of what the sensors alone would leave. [`node`] is a fitted model, [`fit`] fits one, [`compare`] says
-//! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects.
+//! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects. A family
+//! that says at once what a whole recording should be is seen through its [`Residuals`].
 
 pub mod autoregression;
 mod beam;

@@ -93,7 +93,6 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             wall_s: 0.0,
             notes: self.found.notes.clone(),
             stopped: self.found.stopped,
-            disagreements: Vec::new(),
             diagnosis: None,
             diagnosis_base: None,
             views: Vec::new(),

@@ -7,6 +7,8 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::autoregression::Autoregression;
 use super::{quick, statistics};
 use crate::statistics::basis::dot;
@@ -58,9 +60,35 @@ impl Whitening {
     }
 
     /// A change of a residual, filtered as the errors of `residual` are.
-    pub fn change(&self, residual: &[f64], setting: usize) -> impl Fn(&[f64]) -> Vec<f64> + '_ {
+    pub fn change(
+        &self,
+        residual: &[f64],
+        setting: usize,
+    ) -> impl Fn(&[f64]) -> Vec<f64> + Sync + '_ {
         let law = self.law(&self.noisy(residual), setting);
         move |change| self.filtered(change, &law)
+    }
+
+    /// The errors of other residuals as the filter of `residual` sees them.
+    pub fn errors_beside(
+        &self,
+        residual: &[f64],
+        setting: usize,
+        others: &[Vec<f64>],
+    ) -> Vec<Vec<f64>> {
+        if !residual.iter().all(|r| r.is_finite()) {
+            return vec![vec![f64::MAX; residual.len()]; others.len()];
+        }
+        let errors = self.errors(residual, setting);
+        let filtered = self.change(residual, setting);
+        let each = others.par_iter().map(|other| {
+            let change: Vec<f64> = other.iter().zip(residual).map(|(new, old)| new - old).collect();
+            if !change.iter().all(|change| change.is_finite()) {
+                return vec![f64::MAX; residual.len()];
+            }
+            filtered(&change).iter().zip(&errors).map(|(change, error)| error + change).collect()
+        });
+        each.collect()
     }
 
     fn noisy(&self, residual: &[f64]) -> Vec<f64> {

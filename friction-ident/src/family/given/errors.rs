@@ -87,6 +87,16 @@ impl Ahead for View<'_> {
         each.collect()
     }
 
+    fn errors_beside(&self, model: &Fitted, setting: usize, others: &[Fitted]) -> Vec<Vec<f64>> {
+        let own = self.residual(model);
+        let residual = |other: &Fitted| {
+            let is_plant = self.family.model(other).is_ok();
+            if is_plant { self.residual(other) } else { vec![f64::NAN; own.len()] }
+        };
+        let others: Vec<Vec<f64>> = others.par_iter().map(residual).collect();
+        self.given.whitening.errors_beside(&own, setting, &others)
+    }
+
     fn instants(&self) -> &[(f64, usize)] {
         &self.given.instants
     }
