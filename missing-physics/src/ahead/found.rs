@@ -137,24 +137,25 @@ impl Found {
     }
 
     /// Takes all names back where they are not the cause: what is left is in a few wild samples, samples are known to be
-    /// faulty, or the greater part of the force that the base model lacks is still lacking beyond doubt.
+    /// faulty, the greater part of the force that the base model lacks is still lacking beyond doubt, or what is no effect
+    /// does more.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
-        let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
+        let Some(top) = self.rungs.last() else { return };
+        let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
+        if self.complete && no_cause.is_none() {
+            return;
+        }
         let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
         let still = lacks(top).zip(lacks(&self.base)).is_some_and(|((rms, band), (before, _))| {
             rms > thresholds.local * band && rms * rms > MOST * before * before
         });
-        let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
-        if !still
-            && no_cause.is_none()
-            && local::faults(&top.errors).is_none()
-            && ahead.faults().is_none()
-        {
+        let faulty = local::faults(&top.errors).is_some() || ahead.faults().is_some();
+        if !still && !faulty && no_cause.is_none() {
             return;
         }
         let force = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
@@ -174,6 +175,7 @@ impl Found {
         ));
         self.places = local::places(ahead, &self.base, thresholds.local, &family.quantity().unit);
         self.places.splice(0..0, ahead.remains(&self.base.model, thresholds.complete));
+        self.complete = false;
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();

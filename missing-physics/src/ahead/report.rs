@@ -289,6 +289,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                  it, and no effect of the library lowers that by more than chance.",
                 budget.base
             ),
+            Verdict::Unexplained if budget.last <= self.settings.thresholds.complete => format!(
+                "One sample ahead the model errs {:.2} times as much as the sensors make it, but something is left that no \
+                 effect of the library explains.",
+                budget.last
+            ),
             Verdict::Unexplained => format!(
                 "One sample ahead the model errs {:.1} times as much as the sensors make it, and no effect of the \
                  library explains that.",

@@ -3,7 +3,7 @@
 //! Two families of which the engine knows nothing but what they predict: functions of a coordinate that wanders, and a
 //! tank that is simulated freely. Noise is white, or each sample of it 0.9 of the one before.
 //!
-//! `cargo run --release -p benches --bin residuals [-- SEEDS]`
+//! `cargo run --release -p benches --bin residuals [-- SEEDS [WHICH]]`
 
 use missing_physics::report::Verdict;
 use missing_physics::{Coordinate, Discovery, FnFamily, ModelFamily, Settings, Term, discover};
@@ -224,9 +224,6 @@ fn tank(seed: u64, memory: f64, hidden: Hidden) -> Discovery {
         }
     }
     level(&input, &truth, &mut with);
-    if std::env::var("SHOW").is_ok() {
-        println!("q {} d {} T {} z {}", truth.square, truth.delay, truth.lag, truth.dead);
-    }
     let of = |(y, extra): (&f64, &f64)| y + extra + deviation * noise.next();
     let measured: Vec<f64> = with.iter().zip(&extra).map(of).collect();
     let terms = vec![
@@ -304,16 +301,6 @@ fn row(
     let wrong = count(&|f| !f.added.iter().all(is_true) && !hedged(f));
     let doubtful = count(&|f| !f.added.iter().all(is_true) && hedged(f));
     let silent = count(&|f| f.added.is_empty());
-    if std::env::var("SHOW").is_ok() {
-        for f in &all {
-            println!("{:?} {:?}", f.added, f.summary);
-            for d in &f.decisions {
-                println!("   {d:?}");
-            }
-            println!("   {:?}", f.ladder[0].parameters);
-            println!("   {:?}", f.ranking);
-        }
-    }
     let nothing = count(&|f| f.verdict == Verdict::NothingMissing);
     let seconds = all.iter().map(|f| f.wall_s).sum::<f64>() / all.len() as f64;
     let noise = if memory > 0.0 { "coloured" } else { "white" };
