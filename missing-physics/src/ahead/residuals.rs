@@ -1,4 +1,8 @@
-//! Families that say at once what a whole recording should be, seen one sample ahead: what is left, [whitened](Whitening).
+//! Families that say at once what a whole recording should be: what is left of it are the errors.
+//!
+//! In a first look they count as they are, and what resembles its neighbours says less. Only in a second one are they
+//! [whitened](Whitening): an autoregression of what a wrong model leaves looks away from where that is large, and whatever
+//! lowers the rest a little gets a name.
 //!
 //! How large noise makes the errors is known where the family states it ([`ModelFamily::noise`]), else from what changes
 //! quickly in the residual of the base model; its colour is what [`ModelFamily::colour`] says, white where that says
@@ -31,6 +35,8 @@ const SMOOTH: f64 = 0.5;
 const STRUCTURE: (f64, f64) = (0.005, 0.08);
 /// Share of what is more than noise that effects may leave and still be its cause.
 const MOST: f64 = 0.5;
+/// Settings where residuals count as they are, one on each ladder.
+const PLAIN: usize = 2;
 /// Starts of a term with shapes: valleys between them are narrow.
 const STARTS: usize = 3;
 
@@ -45,6 +51,8 @@ pub struct Residuals<'a, F: ModelFamily + ?Sized> {
     left: Vec<f64>,
     /// Whether what changes quickly may be anything.
     coarse: bool,
+    /// Whether residuals are whitened.
+    whitened: bool,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Residuals<'a, F> {
@@ -69,7 +77,12 @@ impl<'a, F: ModelFamily + ?Sized> Residuals<'a, F> {
         let colour: Vec<f64> = std::iter::once(1.0).chain(colour).collect();
         let law = Autoregression::from_products(&colour, 1.0);
         let left = ORDERS.iter().map(|order| law.with_before(*order).left.sqrt()).collect();
-        Self { family, instants, weights, whitening, left, coarse }
+        Self { family, instants, weights, whitening, left, coarse, whitened: false }
+    }
+
+    /// Where the order of a setting stands.
+    fn order(&self, setting: usize) -> usize {
+        if self.whitened { setting.min(ORDERS.len() - 1) } else { 0 }
     }
 
     fn residual(&self, model: &Fitted) -> Vec<f64> {
@@ -94,11 +107,11 @@ impl<'a, F: ModelFamily + ?Sized> Residuals<'a, F> {
 
 impl<F: ModelFamily + ?Sized> Ahead for Residuals<'_, F> {
     fn settings(&self) -> usize {
-        ORDERS.len()
+        if self.whitened { ORDERS.len() } else { PLAIN }
     }
 
     fn expected(&self, setting: usize) -> f64 {
-        self.whitening.budget * self.left[setting.min(self.left.len() - 1)]
+        self.whitening.budget * self.left[self.order(setting)]
     }
 
     fn budget(&self) -> f64 {
@@ -111,7 +124,7 @@ impl<F: ModelFamily + ?Sized> Ahead for Residuals<'_, F> {
             if !residual.iter().all(|r| r.is_finite()) {
                 return vec![f64::MAX; residual.len()];
             }
-            self.whitening.errors(&residual, *setting)
+            self.whitening.errors(&residual, self.order(*setting))
         });
         each.collect()
     }
@@ -119,11 +132,23 @@ impl<F: ModelFamily + ?Sized> Ahead for Residuals<'_, F> {
     fn errors_beside(&self, model: &Fitted, setting: usize, others: &[Fitted]) -> Vec<Vec<f64>> {
         let own = self.residual(model);
         let others: Vec<Vec<f64>> = others.par_iter().map(|other| self.residual(other)).collect();
-        self.whitening.errors_beside(&own, setting, &others)
+        self.whitening.errors_beside(&own, self.order(setting), &others)
     }
 
     fn instants(&self) -> &[(f64, usize)] {
         &self.instants
+    }
+
+    fn coloured(&self) -> Option<Box<dyn Ahead + '_>> {
+        Some(Box::new(Residuals {
+            family: self.family,
+            instants: self.instants.clone(),
+            weights: self.weights.clone(),
+            whitening: self.whitening.clone(),
+            left: self.left.clone(),
+            coarse: self.coarse,
+            whitened: true,
+        }))
     }
 
     fn asked(&self) -> f64 {
