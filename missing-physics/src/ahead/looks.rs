@@ -5,8 +5,10 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use super::beam::{Climb, Search, Tell};
-use super::fit::Fitter;
+use super::compare::Comparison;
+use super::fit::{self as fit_ahead, Fitter};
 use super::found::Found;
+use super::node::Node;
 use super::report::Report;
 use super::residuals::Residuals;
 use super::{Ahead, reading};
@@ -52,7 +54,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let there = there.as_ref().and_then(|(there, nats)| Some((there.coloured()?, *nats)));
     let mut second = run.sought(&here, there.as_ref());
     let plainer = second.found.added.len() < first.found.added.len();
-    if !second.found.complete || (first.found.complete && !plainer) {
+    let leaves_nothing = second.found.complete && (!first.found.complete || plainer);
+    let is_borne_out = first.found.added.is_empty() && first.reading.bears_out(&second.found);
+    if !leaves_nothing && !is_borne_out {
         return run.told(if stop() { first.cut() } else { first });
     }
     second.found.decisions.splice(0..0, first.found.decisions);
@@ -64,17 +68,24 @@ pub struct Reading<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
     whole: Box<dyn Ahead + 'a>,
     part: Option<Box<dyn Ahead + 'a>>,
+    /// Whether the errors are residuals.
+    residuals: bool,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     /// That of a family that predicts one sample ahead.
     pub fn of(family: &'a F) -> Option<Self> {
-        Some(Self { family, whole: family.ahead()?, part: family.ahead_in_part() })
+        Some(Self {
+            family,
+            whole: family.ahead()?,
+            part: family.ahead_in_part(),
+            residuals: false,
+        })
     }
 
     /// That of a family that only gives residuals, whose noise the residual of `base` shows.
     pub fn of_residuals(family: &'a F, base: &Fitted) -> Self {
-        Self { family, whole: Box::new(Residuals::new(family, base)), part: None }
+        Self { family, whole: Box::new(Residuals::new(family, base)), part: None, residuals: true }
     }
 
     /// What is searched.
@@ -86,7 +97,21 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     fn coloured(&self) -> Option<Reading<'_, F>> {
         let part = self.part.as_ref().map(|part| part.coloured());
         let whole = self.whole.coloured()?;
-        Some(Reading { family: self.family, whole, part: part.flatten() })
+        Some(Reading {
+            family: self.family,
+            whole,
+            part: part.flatten(),
+            residuals: self.residuals,
+        })
+    }
+
+    /// Whether residuals as they are fall by what was found in whitened ones: noise of a colour that nobody stated leaves
+    /// no model complete, and hides in them what whitened ones show.
+    fn bears_out(&self, found: &Found) -> bool {
+        let Some(top) = found.rungs.last().filter(|_| self.residuals) else { return false };
+        let as_it_is = |node: &Node| fit_ahead::evaluated(&*self.whole, node.model.clone(), 0);
+        let comparison = Comparison::new(self.family, &*self.whole);
+        comparison.compare(&as_it_is(&found.base), &as_it_is(top)).nats > 0.0
     }
 }
 
