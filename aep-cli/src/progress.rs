@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use aep_studio::words;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
-use missing_physics::measurement::quantity::percent;
 use missing_physics::{Event, Observer};
 
 /// A line that says what is being done.
