@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use aep_studio::words;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
-use missing_physics::measurement::quantity::percent;
 use missing_physics::{Event, Observer};
 
 /// A line that says what is being done.
@@ -77,23 +76,6 @@ impl Observer for Progress {
             }
             Event::Screening { rung, candidates } => {
                 self.say(screening(*rung, *candidates));
-            }
-            Event::ScreeningPairs { pairs } => {
-                self.say(format!("no single candidate helps: {pairs} pairs against placebos"));
-            }
-            Event::Trying { effect, gain, .. } => {
-                self.say(format!("refitting with {effect} (expected gain {})", percent(*gain)));
-            }
-            Event::Added { effects, before, after } => {
-                let effect = effects.join(" + ");
-                let (before, after) = (percent(*before), percent(*after));
-                self.line.println(format!("+ {effect}: held-out error {before} -> {after}"));
-            }
-            Event::Replaced { from, to } => {
-                self.line.println(format!("~ {from}: its form {to} does as much as a new effect"));
-            }
-            Event::Dropped { effect } => {
-                self.line.println(format!("- {effect}: no longer needed"));
             }
             Event::Compared { rung, effects, nats } => {
                 self.say(compared(*rung, effects, *nats));

@@ -2,9 +2,8 @@
 
 use missing_physics::measurement::quantity::{number, percent, quantity};
 use missing_physics::report::{
-    Candidate, Confirmation, Confirmed, DetectionLimit, Diagnosis, Disagreement, Discovery,
-    Estimate, MissingForce, NamedError, NamedValue, Rung, Surrogates, Verdict, Whiteness,
-    floor_key,
+    Candidate, Confirmation, Confirmed, DetectionLimit, Diagnosis, Discovery, Estimate,
+    MissingForce, NamedError, NamedValue, Rung, Surrogates, Verdict, Whiteness, floor_key,
 };
 
 mod axes;
@@ -104,23 +103,10 @@ pub fn is_cut(discovery: &Discovery) -> bool {
     stopped || !discovery.untried.is_empty()
 }
 
-/// What the user should know besides: that the search was cut, where views disagree, and the engine's own notes.
+/// What the user should know besides: that the search was cut, and the engine's own notes.
 pub fn notes(discovery: &Discovery) -> Vec<String> {
     let stopped = discovery.stopped.then(|| STOPPED.to_owned());
-    let views = discovery.disagreements.iter().map(disagreement);
-    stopped.into_iter().chain(views).chain(discovery.notes.iter().cloned()).collect()
-}
-
-fn disagreement(found: &Disagreement) -> String {
-    let Disagreement { added, compared, view, unit, before, after } = found;
-    let unit = unit.as_deref();
-    format!(
-        "The views disagree about {}: with it the {compared} error falls, but the {view} error grows from {} to {}. \
-         Confirm it on another recording (--validate) before you build on it.",
-        added.join(" + "),
-        in_unit(*before, unit),
-        in_unit(*after, unit),
-    )
+    stopped.into_iter().chain(discovery.notes.iter().cloned()).collect()
 }
 
 /// Parameters of a candidate: `dF = 8.20 N, v_S = 1.10 mm/s`.
@@ -357,13 +343,13 @@ fn at(value: f64) -> String {
 }
 
 /// How to read the table of a confirmation.
-pub const CONFIRMATION: &str = "parameters as found, but for what belongs to a recording; 'gain anew': screened there with the \
-    model below it identified anew, 'place' among the likely";
+pub const CONFIRMATION: &str = "parameters as found, but for what belongs to a recording; 'gain anew': all of them \
+                                fitted there";
 
 /// Headings of the table of a confirmation.
 pub fn confirmation_headings(discovery: &Discovery) -> Vec<String> {
     let errors = errors(discovery).into_iter().map(|name| name.heading());
-    let rest = ["holds", "gain anew", "p-value", "place"].map(str::to_owned);
+    let rest = ["holds", "gain anew", "p-value"].map(str::to_owned);
     std::iter::once("rung".to_owned()).chain(errors).chain(rest).collect()
 }
 
@@ -378,8 +364,7 @@ pub fn confirmation_rows(discovery: &Discovery, confirmed: &Confirmed) -> Vec<Ve
         let holds = here.holds.map_or_else(dash, |holds| yes(holds).to_owned());
         let gain = here.gain.map_or_else(dash, percent);
         let p = here.p_value.map_or_else(dash, p_value);
-        let place = here.place.map_or_else(dash, |place| place.to_string());
-        std::iter::once(self::rung(rung)).chain(errors).chain([holds, gain, p, place]).collect()
+        std::iter::once(self::rung(rung)).chain(errors).chain([holds, gain, p]).collect()
     };
     discovery.ladder.iter().zip(&confirmed.rungs).map(row).collect()
 }
@@ -494,26 +479,6 @@ mod tests {
             |size, at| DetectionLimit { parameter: "dF".into(), unit: "N".into(), size, at };
         assert_eq!(detection_limit(&limit(Some(1.2), at)), "dF 1.20 N at v_S 1.10 mm/s");
         assert_eq!(detection_limit(&limit(None, Vec::new())), "no dF within its limits");
-    }
-
-    #[test]
-    fn views_that_disagree_are_told_with_their_numbers() {
-        let mut found = discovery("effects_found", true);
-        found.disagreements = vec![Disagreement {
-            added: vec!["drift".into()],
-            compared: "force".into(),
-            view: "window".into(),
-            unit: Some("m".into()),
-            before: 1e-6,
-            after: 2e-6,
-        }];
-        found.stopped = true;
-        let said = notes(&found);
-        assert_eq!(said[0], STOPPED);
-        assert!(
-            said[1].contains("drift") && said[1].contains("from 1.00 µm to 2.00 µm"),
-            "{said:?}"
-        );
     }
 
     #[test]

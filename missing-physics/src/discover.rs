@@ -1,12 +1,14 @@
-//! The loop: fit, see where it fails, screen, add, refit, until nothing more is gained.
+//! The ways in: what is asked becomes a search, whatever a family can say of a recording.
+
+use std::time::Instant;
 
 use crate::ahead;
-use crate::climb::Search;
 use crate::family::ModelFamily;
+use crate::fit;
 use crate::report::Discovery;
-use crate::task::{DiscoverError, Observer, Settings, terms};
+use crate::task::{DiscoverError, Event, Observer, Settings, terms};
 
-/// Fits the base model, then adds what is missing until nothing is gained on held-out data.
+/// Fits the base model, then searches the set of effects that it lacks, by errors one sample ahead.
 ///
 /// # Errors
 /// When a name in the settings is unknown.
@@ -21,7 +23,30 @@ pub fn discover<F: ModelFamily + ?Sized>(
         let sets = (base.as_slice(), excluded.as_slice());
         return Ok(ahead::discover(&reading, settings, sets, observer));
     }
-    Ok(Search::new(family, settings, &base, excluded, observer).run())
+    Ok(by_residuals(family, settings, (&base, &excluded), observer))
+}
+
+/// The same for a family that only gives residuals: those of the base model, fitted to all of the recording, show how
+/// large the noise is.
+fn by_residuals<F: ModelFamily + ?Sized>(
+    family: &F,
+    settings: &Settings<'_>,
+    sets: (&[usize], &[usize]),
+    observer: &mut (dyn Observer + Send),
+) -> Discovery {
+    let started = Instant::now();
+    let everywhere = vec![1.0; family.target().len()];
+    let start = settings.start.clone().unwrap_or_else(|| {
+        let found = fit::identify(family, sets.0, &everywhere, settings.seed);
+        observer.event(&Event::BaseFitted { evaluations: found.evaluations });
+        found.fit.model
+    });
+    let reading = ahead::Reading::of_residuals(family, &start);
+    let left = settings.time_limit.map(|limit| limit.saturating_sub(started.elapsed()));
+    let settings = Settings { start: Some(start), time_limit: left, ..settings.clone() };
+    let mut discovery = ahead::discover(&reading, &settings, sets, observer);
+    discovery.wall_s = started.elapsed().as_secs_f64();
+    discovery
 }
 
 /// Fits `names` on the fitted blocks, screens everything else once and stops: what a model lacks,

@@ -12,8 +12,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`discover`], [`suggest`], [`confirm`] | the ways in: search, look once, try on another recording |
-//! | [`ahead`] | what decides where a family predicts one sample ahead: fit, compare, screen, search sets, tell |
-//! | [`climb`] | what decides where a family gives residuals only: screening against placebos, one rung at a time |
+//! | [`ahead`] | what decides, from errors one sample ahead: fit, compare, screen, search sets, tell |
 //! | `task` | what is asked: [`Settings`], [`Thresholds`], [`Event`]s for an [`Observer`] |
 //! | [`diagnosis`] | where a model fails and what its residual says: shown to people, decides nothing |
 //! | [`fit`] | least squares of a model on the compared quantity, intervals |
@@ -23,7 +22,6 @@
 //! | [`measurement`] | [`Recording`] and what is to be known of it before any model |
 
 pub mod ahead;
-pub mod climb;
 mod confirm;
 pub mod diagnosis;
 mod discover;

@@ -4,7 +4,7 @@ use aep_data::{Mapping, load, to_csv};
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Axis, Model};
 use missing_physics::report::Verdict;
-use missing_physics::{Discovery, Fitted, confirm, discover};
+use missing_physics::{Channel, Discovery, Fitted, Recording, confirm, discover};
 
 use super::table::{among, plain, record};
 
@@ -66,11 +66,14 @@ fn what_belongs_to_a_recording_does_not_speak_against_an_effect() {
     };
     let (family, found) = searched(&plant(180.0));
     assert_eq!(found.added, ["ripple"], "{}", found.summary);
-    let mut other = record(&plant(150.0));
     let home = 1.7e-3;
-    for channel in other.channels.iter_mut().filter(|channel| channel.name == "position") {
-        channel.values.iter_mut().for_each(|x| *x += home);
-    }
+    let other = record(&plant(150.0));
+    let channels = other.channels().iter().map(|channel| {
+        let by = if channel.name == "position" { home } else { 0.0 };
+        let values = channel.values.iter().map(|value| value + by).collect();
+        Channel::new(channel.name.clone(), channel.unit.clone(), values)
+    });
+    let other = Recording::new("other", other.time().to_vec(), channels.collect()).unwrap();
     let other = FrictionFamily::new(&other, &Options::default()).unwrap();
     let again = confirm(&other, &found.ladder, &among(&family, &AMONG)).unwrap();
     let last = again.last().unwrap();

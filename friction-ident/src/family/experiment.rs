@@ -6,12 +6,10 @@
 
 mod motions;
 
-use missing_physics::climb::screen::{self, Screening};
 use missing_physics::diagnosis::noise;
 use missing_physics::fit::{self, Fit};
 use missing_physics::statistics::basis::dot;
 use missing_physics::statistics::split::Split;
-use missing_physics::statistics::weights;
 use missing_physics::{DiscoverError, Fitted, Recording, terms};
 use rayon::prelude::*;
 
@@ -165,24 +163,13 @@ impl FrictionFamily {
         let fitted: Vec<f64> =
             split.fit(self.target.len()).iter().map(|fit| f64::from(u8::from(*fit))).collect();
         let fit = fit::identify(self, &base, &fitted, seed).fit;
-        let weights = weights(&self.doubt, &fit.residual);
-        let screening = Screening {
-            candidates: &[],
-            weights: &weights,
-            split: &split,
-            motion: &self.motion,
-            seed,
-        };
         effects
             .iter()
             .map(|effect| {
                 let all = terms(self, std::slice::from_ref(effect))?;
                 // Those of every model come first.
                 let term = all[all.len() - 1];
-                let start = screen::best_values(self, &fit, &screening, term).map_or_else(
-                    || fit.model.with(term, &starts(self, term)),
-                    |values| fit::shaped(self, &fit, term, &values, &fitted, seed),
-                );
+                let start = fit::shaped(self, &fit, term, &fitted, seed);
                 Ok(fit::refine(self, start, &fitted))
             })
             .collect()
@@ -310,8 +297,4 @@ impl Separation {
             .min_by(|a, b| a.deviations.total_cmp(&b.deviations))
             .unwrap_or(Self { force: 0.0, deviations: 0.0 })
     }
-}
-
-fn starts(family: &FrictionFamily, term: usize) -> Vec<f64> {
-    family.terms[term].parameters.iter().map(|parameter| parameter.start).collect()
 }

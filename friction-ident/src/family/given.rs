@@ -10,18 +10,18 @@
 //! ```
 //!
 //! `L` is the low-pass of the comparison; it and the mask at rest act on both sides alike, so that a given force that
-//! lacks nothing leaves nothing, whatever a smoother does at reversals. The coefficients `a` are fitted to each model's
-//! own residual (Yule-Walker), for orders `p` from 0 to 6, which take the place of the process noise: the filter is
-//! monic, so that errors of all orders are errors of the same force (L. Ljung, System Identification, 1999, ch. 3.2).
+//! lacks nothing leaves nothing, whatever a smoother does at reversals. The coefficients `a` are those of
+//! [`missing_physics::ahead::whitening`], as for every family that only gives residuals.
 
 mod errors;
-mod whitening;
 
+use std::ops::Range;
+
+use missing_physics::ahead::whitening::Whitening;
 use missing_physics::statistics::basis::{gram, solve};
-use missing_physics::{Fitted, Term};
+use missing_physics::{Fitted, ModelFamily, Term};
 
 pub(super) use errors::View;
-use whitening::Whitening;
 
 use super::FrictionFamily;
 use crate::driven::force_along;
@@ -57,6 +57,8 @@ pub(super) const READING: &str = "The force that your model gives is taken over 
     (timing.smoothing). Rests and reversals are left out, where a force made of velocities says nothing.";
 /// Trial shifts by which the noise is judged.
 const SHIFTS: i32 = 6;
+/// Forces below this share of the recorded one are not looked for: no two programs agree better.
+const FLOOR: f64 = 1e-3;
 
 /// What is known of the given force.
 #[derive(Clone)]
@@ -127,7 +129,7 @@ impl Given {
             (square / values.len().max(1) as f64).sqrt()
         };
         let all = missing_physics::fit::predict(family, model);
-        let size = rms(missing_physics::ModelFamily::target(family));
+        let size = rms(family.target());
         model.terms.iter().enumerate().skip(1).find_map(|(place, term)| {
             let name = family.terms[*term].name.as_str();
             let first = model.values.get(model.range(family, place).start).copied()?;
@@ -199,7 +201,8 @@ impl FrictionFamily {
         let size =
             |residual: &Vec<f64>| missing_physics::statistics::basis::dot(residual, residual);
         let least = trials.min_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or_default();
-        let whitening = Whitening::of(self, &least);
+        let (runs, colour) = (runs(self), self.prepared.colour());
+        let whitening = Whitening::of(self.target(), &least, runs, &colour, FLOOR);
         if let Some(given) = &mut self.given {
             given.whitening = whitening;
         }
@@ -211,6 +214,19 @@ fn instants(family: &FrictionFamily) -> Vec<(f64, usize)> {
     let p = &family.prepared;
     let piece = |k: usize| p.segments.partition_point(|segment| segment.end <= k);
     p.grid.iter().map(|k| (p.time[*k], piece(*k))).collect()
+}
+
+/// Points of the grid that follow each other without a gap.
+fn runs(family: &FrictionFamily) -> Vec<Range<usize>> {
+    let p = &family.prepared;
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for k in 0..p.grid.len() {
+        match runs.last_mut() {
+            Some(run) if p.grid[k] - p.grid[k - 1] == p.stride => run.end = k + 1,
+            _ => runs.push(k..k + 1),
+        }
+    }
+    runs
 }
 
 /// Bandwidth of the comparison with samples every `interval` s, Hz.

@@ -602,10 +602,6 @@ impl ModelFamily for FrictionFamily {
         self.terms.iter().position(|main| main.name == stem)
     }
 
-    fn is_of_sensor(&self, term: usize) -> bool {
-        term > 0 && self.effects[term - 1].sensor().is_some()
-    }
-
     fn joins(&self, model: &Fitted, term: usize) -> bool {
         let Some(effect) = term.checked_sub(1).map(|index| self.effects[index]) else {
             return false;
@@ -644,13 +640,6 @@ impl ModelFamily for FrictionFamily {
         let model = self.model(fitted).ok();
         let view = |model| views::views(&model, &self.recording, &self.time, split);
         model.and_then(view).into_iter().collect()
-    }
-
-    fn view_noise(&self) -> BTreeMap<String, f64> {
-        if self.given.is_some() {
-            return BTreeMap::new();
-        }
-        BTreeMap::from([views::noise(self.axis, self.prepared.position_noise)])
     }
 
     fn full_rate(&self, fitted: &Fitted) -> Option<FullRate> {

@@ -10,9 +10,6 @@ use crate::windows::{Window, WindowErrors, WindowOptions, window_errors};
 
 /// Length of a window, s; velocity weakening makes longer ones unstable even for the true model.
 const LENGTH: f64 = 0.1;
-/// A window's error by noise alone, over that of the position: its start is fitted to noisy samples. Tables
-/// that lack nothing have 1.2 to 1.7.
-const NOISE: f64 = 2.0;
 /// Fewest samples of a window.
 const SAMPLES: f64 = 10.0;
 
@@ -43,12 +40,6 @@ pub fn views(
 
 fn named(axis: Axis, error: SplitError) -> NamedError {
     NamedError::absolute("window", axis.unit(Quantity::Length), error)
-}
-
-/// The error up to which windows may only show the noise of the position.
-pub(super) fn noise(axis: Axis, position_noise: f64) -> (String, f64) {
-    let size = NOISE * position_noise;
-    (named(axis, SplitError { fit: size, validation: size }).key(), size)
 }
 
 /// Whether the block around an instant is held out; nothing between blocks.

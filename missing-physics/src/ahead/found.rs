@@ -131,24 +131,31 @@ impl Found {
     ) {
         let top = self.rungs.last().unwrap_or(&self.base);
         self.places = local::places(ahead, top, thresholds.local, &family.quantity().unit);
+        self.places.splice(0..0, ahead.remains(&top.model, thresholds.complete));
         self.places.splice(0..0, self.rival.clone());
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
     /// Takes all names back where they are not the cause: what is left is in a few wild samples, samples are known to be
-    /// faulty, or the greater part of the force that the base model lacks is still lacking beyond doubt.
+    /// faulty, the greater part of the force that the base model lacks is still lacking beyond doubt, or what is no effect
+    /// does more.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
-        let Some(top) = self.rungs.last().filter(|_| !self.complete) else { return };
+        let Some(top) = self.rungs.last() else { return };
+        let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
+        if self.complete && no_cause.is_none() {
+            return;
+        }
         let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
         let still = lacks(top).zip(lacks(&self.base)).is_some_and(|((rms, band), (before, _))| {
             rms > thresholds.local * band && rms * rms > MOST * before * before
         });
-        if !still && local::faults(&top.errors).is_none() && ahead.faults().is_none() {
+        let faulty = local::faults(&top.errors).is_some() || ahead.faults().is_some();
+        if !still && !faulty && no_cause.is_none() {
             return;
         }
         let force = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
@@ -160,12 +167,15 @@ impl Found {
             self.added.iter().map(|term| family.terms()[*term].name.as_str()).collect();
         self.notes.push(format!(
             "nearest: {} would take the prediction error from {:.2} to {:.2} times what the sensors make{force}: \
-             that is not the cause",
+             that is not the cause{}",
             names.join(" + "),
             self.base.scale / ahead.budget(),
             top.scale / ahead.budget(),
+            no_cause.map_or_else(String::new, |why| format!(" ({why})")),
         ));
         self.places = local::places(ahead, &self.base, thresholds.local, &family.quantity().unit);
+        self.places.splice(0..0, ahead.remains(&self.base.model, thresholds.complete));
+        self.complete = false;
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();

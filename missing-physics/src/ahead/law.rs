@@ -1,10 +1,11 @@
 //! What colours the errors of a model: each is foretold in part by the few before it.
 //!
-//! What a model lacks swings for longer than a sample, so that its prediction errors resemble their neighbours. The
-//! likelihood of such errors is that of what an autoregression leaves of them (G. E. P. Box and G. M. Jenkins, 1970):
-//! that is white, and the autoregression's own determinant is 1. Its coefficients solve the equations of Yule and
-//! Walker by Levinson's recursion.
+//! What a model lacks swings for longer than a sample, so that its prediction errors resemble their neighbours. Their
+//! likelihood is that of what an [`Autoregression`] leaves of them: that is white.
 
+use std::ops::Range;
+
+use super::autoregression::Autoregression;
 use super::statistics;
 
 /// Most errors before one that foretell it.
@@ -14,83 +15,47 @@ const CUT: f64 = 6.0;
 /// The usual size is the median's, and at least this share of the root mean square.
 const LEAST: f64 = 0.3;
 
-/// An autoregression: coefficients of every order up to [`ORDER`], for the first errors of a piece have fewer before
-/// them.
+/// The law that colours errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Law {
-    orders: Vec<Vec<f64>>,
+    of: Autoregression,
 }
 
 impl Law {
     /// Of errors that nothing foretells.
     pub fn none() -> Self {
-        Self { orders: vec![Vec::new()] }
+        Self { of: Autoregression::none() }
     }
 
     /// Whether it leaves all errors as they are.
     pub fn is_none(&self) -> bool {
-        self.orders.len() == 1
+        self.of.order() == 0
     }
 
     /// Of errors that lie at `instants` of a recording; pieces of it have nothing to do with each other.
     pub fn of(errors: &[f64], instants: &[(f64, usize)]) -> Self {
         let usual = statistics::spread(errors).max(LEAST * statistics::rms(errors, f64::INFINITY));
         let cut: Vec<f64> = errors.iter().map(|e| e.max(-CUT * usual).min(CUT * usual)).collect();
-        let mut products = [0.0; ORDER + 1];
-        for piece in runs(&cut, instants) {
-            for (lag, product) in products.iter_mut().enumerate().take(piece.len()) {
-                *product +=
-                    crate::statistics::basis::dot(&piece[lag..], &piece[..piece.len() - lag]);
-            }
-        }
-        Self { orders: levinson(&products) }
+        Self { of: Autoregression::of(&cut, &runs(instants), ORDER, 1.0) }
     }
 
     /// What it leaves of errors.
     pub fn left(&self, errors: &[f64], instants: &[(f64, usize)]) -> Vec<f64> {
-        let mut left = Vec::with_capacity(errors.len());
-        for piece in runs(errors, instants) {
-            for (k, error) in piece.iter().enumerate() {
-                let known = &self.orders[k.min(self.orders.len() - 1)];
-                let before = piece[..k].iter().rev();
-                let foretold: f64 = known.iter().zip(before).map(|(a, e)| a * e).sum();
-                left.push(error - foretold);
-            }
+        if self.is_none() {
+            return errors.to_vec();
         }
-        left
+        self.of.left(errors, &runs(instants))
     }
 }
 
 /// The errors of each piece.
-fn runs<'e>(errors: &'e [f64], instants: &'e [(f64, usize)]) -> impl Iterator<Item = &'e [f64]> {
+fn runs(instants: &[(f64, usize)]) -> Vec<Range<usize>> {
     let mut first = 0;
-    instants.chunk_by(|a, b| a.1 == b.1).map(move |piece| {
-        let run = &errors[first..first + piece.len()];
+    let piece = |piece: &[(f64, usize)]| {
         first += piece.len();
-        run
-    })
-}
-
-/// Coefficients of every order from none, by the sums of products at each lag (N. Levinson, 1947).
-fn levinson(products: &[f64]) -> Vec<Vec<f64>> {
-    let mut orders: Vec<Vec<f64>> = vec![Vec::new()];
-    let mut left = products[0];
-    for order in 1..products.len() {
-        let last = &orders[order - 1];
-        let foretold: f64 =
-            last.iter().zip((1..order).rev()).map(|(a, lag)| a * products[lag]).sum();
-        let reflected = (products[order] - foretold) / left;
-        // Nothing is left to foretell, or nothing is known.
-        if reflected.is_nan() || reflected.abs() >= 1.0 {
-            break;
-        }
-        let mut next: Vec<f64> =
-            last.iter().zip(last.iter().rev()).map(|(a, b)| a - reflected * b).collect();
-        next.push(reflected);
-        left *= 1.0 - reflected * reflected;
-        orders.push(next);
-    }
-    orders
+        first - piece.len()..first
+    };
+    instants.chunk_by(|a, b| a.1 == b.1).map(piece).collect()
 }
 
 #[cfg(test)]
@@ -125,7 +90,8 @@ mod tests {
         let errors = ringing(&made);
         let instants = one_piece(errors.len());
         let law = Law::of(&errors, &instants);
-        let (first, second) = (law.orders[ORDER][0], law.orders[ORDER][1]);
+        let found = &law.of.with_before(ORDER).coefficients;
+        let (first, second) = (found[0], found[1]);
         assert!((first - 1.5).abs() < 0.05 && (second + 0.81).abs() < 0.05, "{first} {second}");
         let left = law.left(&errors, &instants);
         let off: Vec<f64> = left.iter().zip(&made).map(|(a, b)| a - b).collect();
@@ -169,6 +135,7 @@ mod tests {
         errors[7_001] = 1e3;
         // As they are these two would say that half of an error follows from the one before.
         let law = Law::of(&errors, &instants);
-        assert!(law.orders[1][0].abs() < 0.02, "{:?}", law.orders[1]);
+        let found = &law.of.with_before(1).coefficients;
+        assert!(found[0].abs() < 0.02, "{found:?}");
     }
 }

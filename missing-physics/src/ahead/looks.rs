@@ -5,11 +5,14 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use super::beam::{Climb, Search, Tell};
-use super::fit::Fitter;
+use super::compare::Comparison;
+use super::fit::{Fitter, evaluated};
 use super::found::Found;
+use super::node::Node;
 use super::report::Report;
+use super::residuals::Residuals;
 use super::{Ahead, reading};
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 use crate::fit;
 use crate::report::{Decision, Discovery};
 use crate::task::{Event, Observer, Settings, Thresholds};
@@ -60,7 +63,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
 
     let begun = run.begun(here, there.as_ref());
     // Where one effect leaves something two may hide each other: the second look tells sooner.
-    let second = if begun.is_complete() { None } else { look(most) };
+    let second = if begun.is_complete() || here.residuals { None } else { look(most) };
     let second = match second {
         Some(second) if second.is_pair() => return run.told(second.after(begun.decisions())),
         other => other,
@@ -75,7 +78,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let fewer = if first.found.complete { first.found.added.len() - 1 } else { most };
     let second = second.or_else(|| look(fewer));
     match second {
-        Some(second) if second.is_plainer_than(&first) => {
+        Some(second) if second.is_plainer_than(&first) || first.is_silent_on(&second) => {
             run.told(second.after(first.found.decisions))
         }
         Some(second) if !second.found.stopped => run.told(first),
@@ -89,12 +92,20 @@ pub struct Reading<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
     whole: Box<dyn Ahead + 'a>,
     part: Option<Box<dyn Ahead + 'a>>,
+    /// Whether the errors are residuals.
+    residuals: bool,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     /// That of a family that predicts one sample ahead.
     pub fn of(family: &'a F) -> Option<Self> {
-        Some(Self { family, whole: family.ahead()?, part: family.ahead_in_part() })
+        let (whole, part) = (family.ahead()?, family.ahead_in_part());
+        Some(Self { family, whole, part, residuals: false })
+    }
+
+    /// That of a family that only gives residuals, whose noise the residual of `base` shows.
+    pub fn of_residuals(family: &'a F, base: &Fitted) -> Self {
+        Self { family, whole: Box::new(Residuals::new(family, base)), part: None, residuals: true }
     }
 
     /// What is searched.
@@ -106,7 +117,17 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     fn coloured(&self) -> Option<Reading<'_, F>> {
         let part = self.part.as_ref().map(|part| part.coloured());
         let whole = self.whole.coloured()?;
-        Some(Reading { family: self.family, whole, part: part.flatten() })
+        let part = part.flatten();
+        Some(Reading { family: self.family, whole, part, residuals: self.residuals })
+    }
+
+    /// Whether residuals as they are fall by what was found in whitened ones: noise of a colour that nobody stated leaves
+    /// no model complete, and hides in them what whitened ones show.
+    fn bears_out(&self, found: &Found) -> bool {
+        let Some(top) = found.rungs.last().filter(|_| self.residuals) else { return false };
+        let as_it_is = |node: &Node| evaluated(&*self.whole, node.model.clone(), 0);
+        let comparison = Comparison::new(self.family, &*self.whole);
+        comparison.compare(&as_it_is(&found.base), &as_it_is(top)).nats > 0.0
     }
 }
 
@@ -204,6 +225,11 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
         self.found.complete && (fewer || !other.found.complete)
     }
 
+    /// Whether it names nothing, and bears out what the other look found.
+    fn is_silent_on(&self, other: &Self) -> bool {
+        self.found.added.is_empty() && self.reading.bears_out(&other.found)
+    }
+
     /// The same with what was compared before.
     fn after(mut self, decisions: Vec<Decision>) -> Self {
         self.found.decisions.splice(0..0, decisions);
@@ -241,7 +267,7 @@ impl<'a> Run<'a> {
         Begun {
             here: self.pursuit(here),
             there: there.map(|(there, nats)| (self.pursuit(there), nats)),
-            thresholds: self.thresholds,
+            thresholds: self.thresholds.in_part(here.whole.asked()),
             stop: self.stop,
         }
     }
@@ -257,7 +283,7 @@ impl<'a> Run<'a> {
                     && ![term, main].iter().any(|t| excluded.contains(t))
             })
             .collect();
-        let thresholds = self.thresholds.in_part(ahead.share());
+        let thresholds = self.thresholds.in_part(ahead.asked()).in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
         let base = if let Some(near) = &self.settings.start {
             search.base_near(near.clone())

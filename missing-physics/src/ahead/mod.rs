@@ -2,8 +2,10 @@
 //!
 //! Everything here rests on the prediction errors of models, each at the process noise that suits it best, in
 //! units of what the sensors alone would leave. [`node`] is a fitted model, [`fit`] fits one, [`compare`] says
-//! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects.
+//! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects. A family
+//! that says at once what a whole recording should be is seen through its [`Residuals`].
 
+pub mod autoregression;
 mod beam;
 pub mod chance;
 pub mod compare;
@@ -13,15 +15,19 @@ mod law;
 mod local;
 mod looks;
 pub mod node;
+pub mod quick;
 mod reading;
 mod report;
+mod residuals;
 mod scales;
 pub mod screen;
 pub mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
+pub mod whitening;
 
 pub use looks::{Reading, discover};
+pub use residuals::Residuals;
 
 pub use crate::family::{Ahead, Columns, Rival, Trial, trials};
 pub use crate::task::Thresholds;

@@ -59,14 +59,14 @@ impl Node {
     pub fn jacobian<F: ModelFamily + ?Sized>(&self, family: &F, ahead: &dyn Ahead) -> &[Vec<f64>] {
         self.jacobian.get_or_init(|| {
             let moved = scales::of(family, &self.model);
-            let trials: Vec<(Fitted, usize)> = (0..moved.len())
+            let trials: Vec<Fitted> = (0..moved.len())
                 .map(|k| {
                     let mut model = self.model.clone();
                     model.values[k] = moved[k].by(moved[k].difference());
-                    (model, self.setting)
+                    model
                 })
                 .collect();
-            let mut columns = ahead.errors(&trials);
+            let mut columns = ahead.errors_beside(&self.model, self.setting, &trials);
             for (column, moved) in columns.iter_mut().zip(&moved) {
                 let step = moved.difference();
                 for (new, old) in column.iter_mut().zip(&self.errors) {

@@ -93,7 +93,6 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             wall_s: 0.0,
             notes: self.found.notes.clone(),
             stopped: self.found.stopped,
-            disagreements: Vec::new(),
             diagnosis: None,
             diagnosis_base: None,
             views: Vec::new(),
@@ -260,7 +259,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             if leverage <= 0.0 || self.family.form_of(promise.term).is_some() {
                 continue;
             }
-            let size = (self.settings.thresholds.better / leverage).sqrt();
+            let better = self.settings.thresholds.in_part(self.ahead.asked()).better;
+            let size = (better / leverage).sqrt();
             let Some(start) = promise.starts.first() else { continue };
             let values = &start.values[start.range(self.family, start.terms.len() - 1)];
             limits.insert(term.name.clone(), detection_limit(term, values, amplitude, size));
@@ -288,6 +288,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                 "Nothing is missing: one sample ahead the base model errs {:.2} times as much as the sensors make \
                  it, and no effect of the library lowers that by more than chance.",
                 budget.base
+            ),
+            Verdict::Unexplained if budget.last <= self.settings.thresholds.complete => format!(
+                "One sample ahead the model errs {:.2} times as much as the sensors make it, but something is left that no \
+                 effect of the library explains.",
+                budget.last
             ),
             Verdict::Unexplained => format!(
                 "One sample ahead the model errs {:.1} times as much as the sensors make it, and no effect of the \

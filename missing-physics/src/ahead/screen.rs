@@ -159,7 +159,8 @@ impl<'a> Screening<'a> {
         let looks: Vec<Look> = trials.iter().flat_map(looks).collect();
         let with = |looks: &[&Look], shares: &[f64]| -> Vec<Vec<f64>> {
             let models = looks.iter().zip(shares).map(|(look, share)| look.at(*share));
-            self.ahead.errors(&models.map(|model| (model, self.node.setting)).collect::<Vec<_>>())
+            let models: Vec<Fitted> = models.collect();
+            self.ahead.errors_beside(&self.node.model, self.node.setting, &models)
         };
         let mut errors = with(&looks.iter().collect::<Vec<_>>(), &vec![1.0; looks.len()]);
         // What changes the errors beyond measure is looked at once more, gently: the first order is what is asked.

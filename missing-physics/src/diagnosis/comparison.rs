@@ -77,7 +77,6 @@ pub fn comparison<F: ModelFamily + ?Sized>(
         budget: None,
         untried: Vec::new(),
         stopped: false,
-        disagreements: Vec::new(),
         seed,
         wall_s: 0.0,
         notes: Vec::new(),

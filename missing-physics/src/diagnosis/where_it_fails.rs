@@ -99,16 +99,18 @@ fn tested(
     (share, placebo::p_value(share, &placebos))
 }
 
-/// Only the coordinates that are, or behave like, time.
+/// Only the coordinates that are, or behave like, time; the instants themselves where there is none and they only grow.
 pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &Look<'_>) -> Vec<Where> {
     let shuffles = placebo::shuffles(view.residual.len(), PLACEBOS, view.seed);
     let unit = family.quantity().unit;
-    family
-        .coordinates()
-        .par_iter()
-        .filter(|coordinate| only_grows(coordinate))
-        .map(|coordinate| along_time(coordinate, view, &shuffles, &unit))
-        .collect()
+    let instants =
+        Coordinate { state: false, ..Coordinate::of_state("time", "s", family.time().to_vec()) };
+    let mut growing: Vec<&Coordinate> =
+        family.coordinates().iter().filter(|c| only_grows(c)).collect();
+    if growing.is_empty() && only_grows(&instants) {
+        growing.push(&instants);
+    }
+    growing.par_iter().map(|time| along_time(time, view, &shuffles, &unit)).collect()
 }
 
 /// Share of the squared error and of the time in every regime; both sum to one.

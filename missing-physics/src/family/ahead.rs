@@ -19,12 +19,35 @@ pub trait Ahead: Sync {
     /// counts.
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>>;
 
+    /// Prediction errors of models of any terms as the filter of `model` sees them: what they change is linear in what they
+    /// predict. The same as their own errors unless a filter is found for each model.
+    fn errors_beside(&self, _model: &Fitted, setting: usize, others: &[Fitted]) -> Vec<Vec<f64>> {
+        self.errors(&others.iter().map(|other| (other.clone(), setting)).collect::<Vec<_>>())
+    }
+
     /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
     fn instants(&self) -> &[(f64, usize)];
 
     /// Share of the recording's errors that these are: where only a part of it is searched an effect gains as much less.
     fn share(&self) -> f64 {
         1.0
+    }
+
+    /// Share of what an effect must gain that these errors are asked for: few errors can gain no more.
+    fn asked(&self) -> f64 {
+        1.0
+    }
+
+    /// What a model leaves that its errors one sample ahead do not show, in words: with it no model is complete, which
+    /// may err `complete` times as much as the sensors make it.
+    fn remains(&self, _model: &Fitted, _complete: f64) -> Option<String> {
+        None
+    }
+
+    /// Why effects that one model has beyond another are not the cause of what that one lacks, in words: something that is no
+    /// effect does more, or most of what was there is still there.
+    fn is_no_cause(&self, _base: &Fitted, _last: &Fitted) -> Option<String> {
+        None
     }
 
     /// What is wrong with the recording itself, in words: with it no model is complete.

@@ -112,7 +112,8 @@ pub trait ModelFamily: Sync {
         columns(self, model, prediction, term, shape)
     }
 
-    /// The recording one sample ahead, where the family can predict so.
+    /// The recording one sample ahead, where the family can predict so; else its residuals are
+    /// [whitened](crate::ahead::Residuals).
     fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
         None
     }
@@ -138,12 +139,6 @@ pub trait ModelFamily: Sync {
     /// clearly better than the main one.
     fn form_of(&self, _term: usize) -> Option<usize> {
         None
-    }
-
-    /// Whether the term acts on what the sensor shows, not on the plant: it is then only added where it lowers
-    /// the error in every view, as what is shown shows in all of them.
-    fn is_of_sensor(&self, _term: usize) -> bool {
-        false
     }
 
     /// Whether the term can be added to the model.
@@ -204,14 +199,6 @@ pub trait ModelFamily: Sync {
         Vec::new()
     }
 
-    /// The error in a view up to which it may be the noise of the measurement alone, by [`NamedError::key`].
-    /// Where a model leaves no more, an effect is only added if it lowers that error too: a force that is
-    /// too small and too quick to be seen in the motion may be the sensor's own (the counts of an encoder,
-    /// differentiated twice, are a force that depends on the position).
-    fn view_noise(&self) -> BTreeMap<String, f64> {
-        BTreeMap::new()
-    }
-
     /// The residual of the model at the full rate of the recording, for spectra; nothing where the grid
     /// has all there is.
     fn full_rate(&self, _model: &Fitted) -> Option<FullRate> {
@@ -224,7 +211,8 @@ pub trait ModelFamily: Sync {
         Vec::new()
     }
 
-    /// What is known of the noise from the measurement itself, by quantity.
+    /// What is known of the noise from the measurement itself, by quantity and unit (`level_m`): that of
+    /// [`target`](Self::target) says how much a model may leave where residuals decide.
     fn noise(&self) -> BTreeMap<String, f64> {
         BTreeMap::new()
     }

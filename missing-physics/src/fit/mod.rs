@@ -4,8 +4,6 @@ mod refine;
 mod search;
 pub mod uncertainty;
 
-pub(crate) use refine::moved;
 pub use refine::{Fit, as_given, evaluate, predict, refine, residual, weighted_square};
-pub(crate) use search::joined;
 pub use search::shaped;
 pub use search::{Found, identify, identify_by};

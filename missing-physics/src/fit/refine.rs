@@ -143,7 +143,7 @@ fn pushed_out(parameter: &Parameter, value: f64, moment: f64) -> bool {
 
 /// A value after a step on its own scale, kept within bounds. A step on a logarithmic scale is at
 /// most a factor of three: farther away the linearisation says nothing.
-pub(crate) fn moved(parameter: &Parameter, value: f64, step: f64) -> f64 {
+fn moved(parameter: &Parameter, value: f64, step: f64) -> f64 {
     let new = match parameter.scale {
         Scale::Linear => value + step,
         Scale::Log => value * step.clamp(-1.1, 1.1).exp(),

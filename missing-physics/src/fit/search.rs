@@ -18,6 +18,11 @@ const GENERATIONS: u64 = 200;
 const STAGNATION: u64 = 25;
 /// Individuals and generations of the search over one candidate's shapes.
 const CANDIDATE: (usize, u64) = (12, 20);
+/// A column whose square falls below this share when the model's own freedom is taken out says nothing that the model does
+/// not say.
+const NOTHING_NEW: f64 = 1e-6;
+/// Of two trial shapes that remove nearly as much, this close, the one tried first is taken.
+const AS_GOOD: f64 = 0.97;
 
 /// An identified model.
 pub struct Found {
@@ -73,21 +78,16 @@ pub fn identify_by<F: ModelFamily + ?Sized>(
     Found { fit: fit::refine(family, best, weights), evaluations }
 }
 
-/// The model of `fit` with a term added; its shapes are searched between the neighbours of those in
-/// `values`, which are among the term's trial shapes.
+/// The model of `fit` with a term added: the trial shape that removes most of what the fit leaves, searched on between
+/// its neighbours.
 pub fn shaped<F: ModelFamily + ?Sized>(
     family: &F,
     fit: &Fit,
     term: usize,
-    values: &[f64],
     weights: &[f64],
     seed: u64,
 ) -> Fitted {
     let about = &family.terms()[term];
-    let shape: Vec<f64> = pick(&about.parameters, values, Role::Shape);
-    if shape.is_empty() {
-        return fit.model.with(term, values);
-    }
     let weigh = |column: &[f64]| weighed(column, weights);
     let own = Basis::of(&fit.jacobian.iter().map(|column| weigh(column)).collect::<Vec<_>>());
     let mut residual = weigh(&fit.residual);
@@ -97,18 +97,37 @@ pub fn shaped<F: ModelFamily + ?Sized>(
         some => some.iter().map(|parameter| parameter.lower >= 0.0).collect(),
     };
     let total = dot(&residual, &residual).max(f64::MIN_POSITIVE);
-    let profile = |shape: &[f64]| {
-        let mut columns = family.columns(&fit.model, &fit.prediction, term, shape);
+    let profiled = |mut columns: Vec<Vec<f64>>| {
         for column in &mut columns {
             *column = weigh(column);
+            let before = dot(column, column);
             own.project_out(column);
+            // Only rounding noise is left.
+            if dot(column, column) < NOTHING_NEW * before {
+                column.fill(0.0);
+            }
         }
         let moment: Vec<f64> = columns.iter().map(|column| dot(column, &residual)).collect();
         let beta = constrained(&gram(&columns), &moment, &positive);
         let fall: f64 = beta.iter().zip(&moment).map(|(b, m)| b * m).sum();
         (1.0 - fall / total, beta)
     };
-    let limits = neighbours(&family.shapes(term), &shape);
+    let profile =
+        |shape: &[f64]| profiled(family.columns(&fit.model, &fit.prediction, term, shape));
+    let tried = family.shapes(term);
+    let left: Vec<f64> = family
+        .columns_of_shapes(&fit.model, &fit.prediction, term, &tried)
+        .into_iter()
+        .map(|columns| profiled(columns).0)
+        .collect();
+    let least = left.iter().copied().fold(f64::INFINITY, f64::min);
+    // Of shapes that remove nearly as much the first one.
+    let as_good = left.iter().position(|left| 1.0 - left >= AS_GOOD * (1.0 - least));
+    let Some(shape) = as_good.filter(|_| least < 1.0).map(|k| tried[k].clone()) else {
+        let starts: Vec<f64> = about.parameters.iter().map(|parameter| parameter.start).collect();
+        return fit.model.with(term, &starts);
+    };
+    let limits = neighbours(&tried, &shape);
     let shapes = about.parameters.iter().filter(|p| p.role == Role::Shape);
     let window: Vec<Parameter> = shapes
         .zip(limits)
@@ -118,31 +137,11 @@ pub fn shaped<F: ModelFamily + ?Sized>(
     let method = Aep::practical().with_population(population);
     let domain: Vec<&Parameter> = window.iter().collect();
     let (found, _) = minimise(&domain, &|x: &[f64]| profile(x).0, &method, generations, seed);
-    let shape = if profile(&found).0 < profile(&shape).0 { found } else { shape };
+    let searched = !shape.is_empty() && profile(&found).0 < profile(&shape).0;
+    let shape = if searched { found } else { shape };
     let amplitude = profile(&shape).1;
     let amplitude: &[f64] = if amplitudes(about).is_empty() { &[] } else { &amplitude };
     fit.model.with(term, &assemble(about, &shape, amplitude))
-}
-
-/// The model of `fit` with terms added at given shapes; all amplitudes are those of least squares.
-pub fn joined<F: ModelFamily + ?Sized>(
-    family: &F,
-    fit: &Fit,
-    terms: &[(usize, &[f64])],
-    weights: &[f64],
-) -> Fitted {
-    let mut start = fit.model.clone();
-    for (term, shape) in terms {
-        let about = &family.terms()[*term];
-        let sizes: Vec<f64> = amplitudes(about).iter().map(|parameter| parameter.start).collect();
-        start = start.with(*term, &assemble(about, shape, &sizes));
-    }
-    let parameters: Vec<Parameter> = start.parameters(family).map(|(_, p)| p.clone()).collect();
-    projected(family, &start, &parameters, weights).0
-}
-
-fn pick(parameters: &[Parameter], values: &[f64], role: Role) -> Vec<f64> {
-    parameters.iter().zip(values).filter(|(p, _)| p.role == role).map(|(_, v)| *v).collect()
 }
 
 /// On each axis the nearest values that were tried below and above.

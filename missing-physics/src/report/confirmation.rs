@@ -15,13 +15,11 @@ pub struct Confirmation {
     pub effects: Vec<String>,
     /// Name of the error -> its size with the parameters as they were found; nothing is fitted but [`Self::own`].
     pub error: BTreeMap<String, f64>,
-    /// Whether the effect, as it was found, removes at least the least gain of the squared error here,
-    /// and no other view contradicts.
+    /// Whether the effect predicts better here as it was found, and gains enough where all is fitted here.
     pub holds: Option<bool>,
-    /// Share of the held-out squared error that the effect removes where the model below it is
-    /// identified anew on these recordings.
+    /// Share of the squared prediction error that it removes on held-out data where all parameters are fitted here.
     pub gain: Option<f64>,
-    /// Its p-value there.
+    /// p-value of what it gains as it was found.
     pub p_value: Option<f64>,
     /// What it gains in log-likelihood of the prediction errors as it was found, nats; nothing is fitted but
     /// [`Self::own`].
@@ -30,8 +28,6 @@ pub struct Confirmation {
     /// What belongs to a recording and was fitted to these ones: where homing put the position's zero, how warm it was.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own: Vec<NamedValue>,
-    /// Its place there among the candidates that gain more than chance, from 1.
-    pub place: Option<usize>,
 }
 
 /// A ladder on recordings that had no part in it.

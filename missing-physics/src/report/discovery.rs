@@ -17,7 +17,7 @@ use super::plot::Plot;
 use super::rung::Rung;
 use super::surrogates::Surrogates;
 use super::verdict::{Ambiguity, Budget, Verdict};
-use super::view::{Disagreement, View};
+use super::view::View;
 
 /// The whole result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,9 +80,6 @@ pub struct Discovery {
     /// Whether the search was cut before its end: what is told is what was found until then.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stopped: bool,
-    /// Views of the error that contradict an effect that was added.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub disagreements: Vec<Disagreement>,
     /// Seed of every random choice.
     pub seed: u64,
     /// Time taken, s.

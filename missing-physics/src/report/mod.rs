@@ -33,4 +33,4 @@ pub use residual_map::{MapBin, ResidualMap};
 pub use rung::{Estimate, NamedError, Rung, SplitError, floor_key, relative_key};
 pub use surrogates::Surrogates;
 pub use verdict::{Ambiguity, Budget, Verdict};
-pub use view::{Disagreement, View};
+pub use view::View;

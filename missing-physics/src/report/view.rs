@@ -23,20 +23,3 @@ pub struct View {
     /// What the user should know about these numbers.
     pub warnings: Vec<String>,
 }
-
-/// A view of the error that grows with an effect that lowers the compared error.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Disagreement {
-    /// What was added on the rung.
-    pub added: Vec<String>,
-    /// The compared quantity, whose error falls.
-    pub compared: String,
-    /// The view that grows.
-    pub view: String,
-    /// Its unit; nothing for a fraction.
-    pub unit: Option<String>,
-    /// Held-out error without the effect.
-    pub before: f64,
-    /// Held-out error with it.
-    pub after: f64,
-}

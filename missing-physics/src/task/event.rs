@@ -16,20 +16,6 @@ pub enum Event<'a> {
         /// Number of candidates.
         candidates: usize,
     },
-    /// No single candidate helps: pairs of them are being screened.
-    ScreeningPairs {
-        /// Number of pairs.
-        pairs: usize,
-    },
-    /// A candidate is being re-identified together with the whole model.
-    Trying {
-        /// Name of the effect.
-        effect: &'a str,
-        /// Share of the held-out squared error it is expected to remove.
-        gain: f64,
-        /// Its p-value.
-        p_value: f64,
-    },
     /// A set of effects has been fitted and compared.
     Compared {
         /// Number of effects beside the base.
@@ -38,27 +24,6 @@ pub enum Event<'a> {
         effects: &'a [String],
         /// Held-out log-likelihood gained, nats.
         nats: f64,
-    },
-    /// An effect was added, or several that only help together.
-    Added {
-        /// Names of the effects.
-        effects: &'a [String],
-        /// Relative error on held-out data before.
-        before: f64,
-        /// Relative error on held-out data after.
-        after: f64,
-    },
-    /// Another form of an effect added before does as much as a new effect would.
-    Replaced {
-        /// Name of the form that it had.
-        from: &'a str,
-        /// Name of the form that it has now.
-        to: &'a str,
-    },
-    /// An effect added before is no longer needed.
-    Dropped {
-        /// Name of the effect.
-        effect: &'a str,
     },
     /// The loop has ended; the report is being made.
     Finishing,

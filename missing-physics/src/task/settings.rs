@@ -11,20 +11,17 @@ use crate::family::Fitted;
 pub struct Settings<'a> {
     /// Names of the terms of the base model (those of every model need not be named).
     pub base: Vec<String>,
-    /// The base model as it is known already, near which it is fitted; else it is searched for. Only where the family
-    /// predicts one sample ahead.
+    /// The base model as it is known already, near which it is fitted; else it is searched for.
     pub start: Option<Fitted>,
     /// Names of terms that are not to be tried.
     pub exclude: Vec<String>,
     /// Seed of every random choice.
     pub seed: u64,
-    /// Largest p-value at which an effect is added: the false-alarm rate of a screening.
+    /// Largest p-value at which an effect holds on other recordings.
     pub alpha: f64,
-    /// Smallest share of the held-out squared error that an effect must remove.
-    pub least_gain: f64,
     /// Most effects that are added.
     pub most: usize,
-    /// Numbers that steer the search where the family predicts one sample ahead.
+    /// Numbers that steer the search.
     pub thresholds: Thresholds,
     /// Set from outside to stop; what has been found is reported.
     pub stop: Option<&'a AtomicBool>,
@@ -40,7 +37,6 @@ impl Default for Settings<'_> {
             exclude: Vec::new(),
             seed: 1,
             alpha: 0.05,
-            least_gain: 0.02,
             most: 8,
             thresholds: Thresholds::default(),
             stop: None,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use missing_physics::ahead::whitening::ORDERS;
 use missing_physics::ahead::{Ahead, Columns, Rival, Trial, trials};
 use missing_physics::family::Series;
 use missing_physics::{Fitted, ModelFamily};
@@ -9,7 +10,6 @@ use rayon::prelude::*;
 
 use super::super::FrictionFamily;
 use super::super::ahead::rivals;
-use super::whitening::ORDERS;
 use super::{Given, UNSEEN};
 use crate::effects::Slot;
 
@@ -52,10 +52,6 @@ impl View<'_> {
         });
         Some(each.collect())
     }
-
-    fn order(setting: usize) -> usize {
-        ORDERS[setting.min(ORDERS.len() - 1)]
-    }
 }
 
 /// What a force that repeats along the stroke changes, to its fundamental.
@@ -86,9 +82,19 @@ impl Ahead for View<'_> {
             if self.family.model(model).is_err() || !residual.iter().all(|r| r.is_finite()) {
                 return vec![f64::MAX; residual.len()];
             }
-            self.given.whitening.errors(&residual, Self::order(*setting))
+            self.given.whitening.errors(&residual, *setting)
         });
         each.collect()
+    }
+
+    fn errors_beside(&self, model: &Fitted, setting: usize, others: &[Fitted]) -> Vec<Vec<f64>> {
+        let own = self.residual(model);
+        let residual = |other: &Fitted| {
+            let is_plant = self.family.model(other).is_ok();
+            if is_plant { self.residual(other) } else { vec![f64::NAN; own.len()] }
+        };
+        let others: Vec<Vec<f64>> = others.par_iter().map(residual).collect();
+        self.given.whitening.errors_beside(&own, setting, &others)
     }
 
     fn instants(&self) -> &[(f64, usize)] {
@@ -117,7 +123,7 @@ impl Ahead for View<'_> {
         let from_end = parameters.iter().rev().position(|p| p.name == law.period)? + 1;
         let base = trials.first()?.model.without(self.family, term);
         let residual = self.residual(&base);
-        let change = self.given.whitening.change(&residual, Self::order(setting));
+        let change = self.given.whitening.change(&residual, setting);
         let period = |trial: &Trial| vec![trial.model.values[trial.model.values.len() - from_end]];
         let periods: Vec<Vec<f64>> = trials.iter().map(period).collect();
         let waves = self.family.repeated(sine_and_cosine, &periods);
