@@ -61,8 +61,11 @@ fn what_was_hidden_is_named_with_its_size_and_holds_elsewhere() {
 fn what_belongs_to_a_recording_does_not_speak_against_an_effect() {
     let ripple = [("a_1", 1.6), ("b_1", 0.4), ("l", 0.005)];
     let plant = |damping: f64| {
-        let damped = plain().with("viscous", &[("F_v", damping)]);
-        damped.and_then(|plant| plant.with("ripple", &ripple)).unwrap()
+        Model::new(Axis::Linear, 35.0)
+            .and_then(|model| model.with("coulomb", &[("F_C", 6.0)]))
+            .and_then(|model| model.with("viscous", &[("F_v", damping)]))
+            .and_then(|model| model.with("ripple", &ripple))
+            .unwrap()
     };
     let (family, found) = searched(&plant(180.0));
     assert_eq!(found.added, ["ripple"], "{}", found.summary);

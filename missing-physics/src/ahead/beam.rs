@@ -172,7 +172,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 let unasked = (self.stop)() && !costs.is_empty() && !self.ahead.rivals().is_empty();
                 rival = unasked.then(|| UNASKED.to_owned());
             }
-            let beside = self.beside(&last);
+            let mut beside = self.beside(&last);
+            if let (true, Some(before)) =
+                (beside.promises.is_empty(), climb.ranking.get(costs.len().wrapping_sub(1)))
+            {
+                // Nothing else is open: what was gained by chance where the last one was added.
+                beside.chance = before.chance.clone();
+            }
             let by_chance = |cost| self.p_value(&beside, cost) > self.thresholds.chance;
             let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1)) else {
                 return self.conclude(climb, &last, costs, beside, rival);

@@ -13,8 +13,13 @@ fn never() -> bool {
 }
 
 fn found(plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
+    among(&ALL, plant, thresholds, most)
+}
+
+fn among(candidates: &[usize], plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
     let thresholds = Thresholds { most, ..thresholds };
-    let mut search = Search::new(plant, plant, thresholds, ALL.to_vec(), &never, &|_| ());
+    let candidates = candidates.to_vec();
+    let mut search = Search::new(plant, plant, thresholds, candidates, &never, &|_| ());
     let base = search.base(Plant::model(&[]));
     let climb = search.begin(base);
     search.finish(climb)
@@ -52,6 +57,19 @@ fn two_hidden_effects_are_found_and_no_third_one() {
         .flat_map(|decision| decision.candidate.iter().map(String::as_str))
         .collect();
     assert!(names.contains(&"wave") && names.contains(&"tone"), "{names:?}");
+}
+
+#[test]
+fn an_effect_that_is_the_only_candidate_is_judged_by_chance_all_the_same() {
+    let plant = Plant::new(1, &[(TONE, &[0.02, 5.0])]);
+    let told = among(&[TONE], &plant, Thresholds::default(), 4);
+    assert_eq!(told.added, [TONE]);
+    assert!(told.p_values.iter().all(|p| (1e-3..=0.01).contains(p)), "{:?}", told.p_values);
+    let nothing = (40..60).filter(|seed| {
+        let told = among(&[TONE], &Plant::new(*seed, &[]), narrow(), 4);
+        !told.added.is_empty()
+    });
+    assert_eq!(nothing.count(), 0);
 }
 
 #[test]
