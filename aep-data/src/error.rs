@@ -445,7 +445,7 @@ impl Problem {
             Self::NoHeader { columns } => format!(
                 "put a line with {columns} names on top, e.g. time_s,force_N,position_m"
             ),
-            Self::NotText { .. } => "export the data as CSV (UTF-8) or as MATLAB v5/v7".to_owned(),
+            Self::NotText { .. } => "export the data as CSV (UTF-8) or as a MATLAB file".to_owned(),
             Self::DuplicateColumn { .. } => "rename one of the two columns".to_owned(),
             Self::RaggedRow { .. } => {
                 "complete or delete the row; decimal commas need ';' between the columns".to_owned()

@@ -254,7 +254,7 @@ fn regressor(text: &str) -> Result<(String, String), String> {
 #[derive(clap::Args, Clone, Debug)]
 pub struct DataArgs {
     /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), or
-    /// MATLAB v5/v7. Names, units and gains may also stand in DATA.toml beside it. Several files are
+    /// MATLAB (v5 to v7.3). Names, units and gains may also stand in DATA.toml beside it. Several files are
     /// pieces of one measurement.
     #[arg(value_name = "DATA", required = true)]
     paths: Vec<PathBuf>,

@@ -32,7 +32,7 @@ use crate::{outputs, series};
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), MATLAB v5/v7, Parquet,
+    /// The measurement: CSV with `time_s,force_N,position_m` (rotary: `torque_Nm,angle_rad`), MATLAB (v5 to v7.3), Parquet,
     /// .npz, .xlsx, or `-` for standard input; without it, the example that comes with the program. Names, units and gains may also
     /// stand in DATA.toml beside it. Several files are pieces of one measurement
     #[arg(value_name = "DATA")]
@@ -46,7 +46,8 @@ pub struct Args {
     /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
-    /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them
+    /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them but what belongs
+    /// to a recording: where homing put the position's zero, how hard the lubricant shears
     #[arg(long, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
     /// False alarms on this very axis: search N surrogates of the recording (what the last model would have made, its own

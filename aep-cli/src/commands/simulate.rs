@@ -24,7 +24,7 @@ pub struct Args {
     /// The model, as written by identify, extend or discover
     #[arg(long, value_name = "MODEL.json")]
     model: PathBuf,
-    /// The recording with the force: CSV or MATLAB v5/v7
+    /// The recording with the force: CSV or MATLAB (v5 to v7.3)
     #[arg(long, value_name = "DATA")]
     input: PathBuf,
     /// Where the motion is written, as CSV
