@@ -61,6 +61,8 @@ pub fn discover<F: ModelFamily + ?Sized>(
         Some(run.begun(here, there.as_ref()).finished())
     };
 
+    // Two are the fewest that hide each other, and more are seldom all of it.
+    let most = if here.residuals { most } else { most.min(PAIR) };
     let begun = run.begun(here, there.as_ref());
     // Where one effect leaves something two may hide each other: the second look tells sooner.
     let second = if begun.is_complete() || here.residuals { None } else { look(most) };
@@ -76,7 +78,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     }
     // Beside a complete one only fewer effects count.
     let fewer = if first.found.complete { first.found.added.len() - 1 } else { most };
-    let second = second.or_else(|| look(fewer));
+    let second = second.or_else(|| look(fewer.min(most)));
     match second {
         Some(second) if second.is_plainer_than(&first) || first.is_silent_on(&second) => {
             run.told(second.after(first.found.decisions))
@@ -204,7 +206,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
     }
 }
 
-/// Two effects are the fewest that hide each other.
+/// Effects that a second look goes up to.
 const PAIR: usize = 2;
 
 /// What was found in a reading.
