@@ -16,4 +16,4 @@ pub use horizon::{Compared, TimeArgs, TimeTask};
 pub use known::KnownArgs;
 pub use run::{LimitArgs, OutputArgs, RunArgs};
 pub use series::{SeriesArgs, axis_path};
-pub use shell::flag;
+pub use shell::{flag, quoted};

@@ -7,7 +7,7 @@ use missing_physics::report::Combinations;
 use missing_physics::{Discovery, Thresholds};
 use serde_json::{Value, json};
 
-use crate::args::OutputArgs;
+use crate::args::{OutputArgs, quoted};
 use crate::failure::Failure;
 use crate::output::{save, save_json, written};
 
@@ -121,10 +121,8 @@ pub fn source(loaded: &Loaded) -> Source {
     }
 }
 
-/// How the page is made again, quotes where a name has blanks.
+/// How the page is made again, as a shell takes it.
 pub fn command() -> String {
-    let words = std::env::args()
-        .skip(1)
-        .map(|word| if word.contains(char::is_whitespace) { format!("'{word}'") } else { word });
+    let words = std::env::args().skip(1).map(|word| quoted(&word));
     format!("aep {}", words.collect::<Vec<String>>().join(" "))
 }

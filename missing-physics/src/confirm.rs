@@ -56,8 +56,8 @@ fn one_ahead<F: ModelFamily + ?Sized>(
             value,
             unit: own.unit,
         };
+        let setting = if own.is_empty() { setting } else { fit::best_setting(ahead, &model) };
         here.own = own.into_iter().map(named).collect();
-        let setting = fit::best_setting(ahead, &model);
         let found = fit::evaluated(ahead, model.clone(), setting);
         let anew = fit::Fitter::new(family, ahead).refit(model, setting, STEPS);
         if let Some((before, before_anew)) = below.filter(|_| !rung.added.is_empty()) {

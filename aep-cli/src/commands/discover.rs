@@ -3,12 +3,12 @@
 mod axes;
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use aep_data::Axes;
 use aep_studio::words;
-use friction_ident::family::Decides;
-use missing_physics::{Discovery, Fitted, Thresholds, discover, model_of};
+use friction_ident::family::{Decides, FrictionFamily};
+use missing_physics::{Discovery, Fitted, Recording, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
 use missing_physics::report::{Combinations, Confirmed, Verdict};
 
@@ -178,17 +178,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         proposal = propose(&family, last, rivals, path, args.run.seed)?;
         more.append(&mut proposal.more);
     }
-    let mut friction = Combinations::default();
-    if let Some(last) = discovery.ladder.last() {
-        friction = family.friction(&model_of(&family, last)?, Decides::Prediction);
-    }
+    let friction = friction(&family, &discovery)?;
     let mut points = String::new();
     if let Some(path) = args.series.path() {
         progress.say("predicting every sample");
-        let rungs: Result<Vec<(String, Fitted)>, Failure> = (discovery.ladder.iter().enumerate())
-            .map(|(k, rung)| Ok((series::rung(k, &rung.added), model_of(&family, rung)?)))
-            .collect();
-        points = series::save(path, (&loaded.recording, &family), &rungs?, Decides::Prediction)?;
+        points = save_series(path, (&loaded.recording, &family), &discovery)?;
     }
     drop(progress);
     let report = Report {
@@ -216,9 +210,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 }
 
 fn save_model(
-    family: &friction_ident::family::FrictionFamily,
+    family: &FrictionFamily,
     discovery: &Discovery,
-    path: &std::path::Path,
+    path: &Path,
 ) -> Result<String, Failure> {
     let Some(last) = discovery.ladder.last() else {
         return Ok(String::new());
@@ -226,6 +220,24 @@ fn save_model(
     let model = steps::model(family, last)?;
     output::save(path, &(model.to_json()? + "\n"))?;
     Ok(written("model", path))
+}
+
+/// What parameters of the last model make together.
+fn friction(family: &FrictionFamily, discovery: &Discovery) -> Result<Combinations, Failure> {
+    let Some(last) = discovery.ladder.last() else { return Ok(Combinations::default()) };
+    Ok(family.friction(&model_of(family, last)?, Decides::Prediction))
+}
+
+/// Writes every rung point by point; returns what to tell the user.
+fn save_series(
+    path: &Path,
+    (recording, family): (&Recording, &FrictionFamily),
+    discovery: &Discovery,
+) -> Result<String, Failure> {
+    let rungs: Result<Vec<(String, Fitted)>, Failure> = (discovery.ladder.iter().enumerate())
+        .map(|(k, rung)| Ok((series::rung(k, &rung.added), model_of(family, rung)?)))
+        .collect();
+    series::save(path, (recording, family), &rungs?, Decides::Prediction)
 }
 
 /// The loop as it went: where the base model failed, what was tried, what was gained.

@@ -173,11 +173,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 rival = unasked.then(|| UNASKED.to_owned());
             }
             let mut beside = self.beside(&last);
-            if let (true, Some(before)) =
-                (beside.promises.is_empty(), climb.ranking.get(costs.len().wrapping_sub(1)))
-            {
+            if beside.promises.is_empty() {
                 // Nothing else is open: what was gained by chance where the last one was added.
-                beside.chance = before.chance.clone();
+                let before = costs.len().checked_sub(1).and_then(|k| climb.ranking.get(k));
+                beside.chance = before.map(|ranked| ranked.chance.clone()).unwrap_or_default();
             }
             let by_chance = |cost| self.p_value(&beside, cost) > self.thresholds.chance;
             let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1)) else {

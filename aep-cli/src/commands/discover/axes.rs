@@ -7,13 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use aep_data::{Axes, Loaded, PLACE};
 use aep_studio::report::AxisPage;
 use aep_studio::words::{AXES_HEADINGS, AxisResult, axis_row};
-use friction_ident::family::Decides;
 use missing_physics::measurement::check::{DataCheck, check};
 use missing_physics::report::Combinations;
-use missing_physics::{Discovery, Fitted, discover, model_of};
+use missing_physics::{Discovery, discover};
 use serde_json::{Value, json};
 
-use super::{Args, save_model};
+use super::{Args, friction, save_model, save_series};
 use crate::app::Global;
 use crate::args::axis_path;
 use crate::failure::Failure;
@@ -21,7 +20,7 @@ use crate::output::{self, Align, Table, dim, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report, command, source};
 use crate::stop::Watch;
-use crate::{outputs, series, steps};
+use crate::{outputs, steps};
 
 /// `all`, or numbers and names.
 pub fn wanted(text: &str) -> Result<Axes, String> {
@@ -202,10 +201,7 @@ fn search(args: &Args, axis: &Axis) -> Result<Searched, Failure> {
     let settings = args.run.settings(base)?;
     let family = steps::family(recording, args.bandwidth, &args.known.known()?)?;
     let discovery = discover(&family, &settings, &mut ())?;
-    let mut friction = Combinations::default();
-    if let Some(last) = discovery.ladder.last() {
-        friction = family.friction(&model_of(&family, last)?, Decides::Prediction);
-    }
+    let friction = friction(&family, &discovery)?;
     let report = Report {
         kind: Kind::Discovery,
         discovery: &discovery,
@@ -221,10 +217,7 @@ fn search(args: &Args, axis: &Axis) -> Result<Searched, Failure> {
         files += &save_model(&family, &discovery, &axis_path(path, &axis.name))?;
     }
     if let Some(path) = args.series.of_axis(&axis.name) {
-        let rungs: Result<Vec<(String, Fitted)>, Failure> = (discovery.ladder.iter().enumerate())
-            .map(|(k, rung)| Ok((series::rung(k, &rung.added), model_of(&family, rung)?)))
-            .collect();
-        files += &series::save(&path, (recording, &family), &rungs?, Decides::Prediction)?;
+        files += &save_series(&path, (recording, &family), &discovery)?;
     }
     Ok(Searched { discovery, friction, json, files })
 }
