@@ -67,12 +67,8 @@ impl Report<'_> {
         let broken =
             |error: serde_json::Error| Failure::failed(format!("cannot write JSON: {error}"));
         let mut json = match self.kind {
-            // The curves are for the page.
-            Kind::Discovery => {
-                let bare = Discovery { plots: Vec::new(), ..self.discovery.clone() };
-                serde_json::to_value(bare).map_err(broken)?
-            }
-            Kind::Comparison => comparison(self.discovery),
+            Kind::Discovery => aep_studio::json::json(self.discovery).map_err(broken)?,
+            Kind::Comparison => comparison(self.discovery).map_err(broken)?,
         };
         for (key, value) in &self.more {
             json[*key] = value.clone();
@@ -90,9 +86,10 @@ impl Report<'_> {
 }
 
 /// The last rung with where it fails.
-fn comparison(discovery: &Discovery) -> Value {
+fn comparison(discovery: &Discovery) -> serde_json::Result<Value> {
     let last = discovery.ladder.last();
-    json!({
+    let diagnosis = discovery.diagnosis.as_ref().map(aep_studio::json::diagnosis).transpose()?;
+    Ok(json!({
         "effects": last.map(|rung| &rung.effects),
         "parameters": last.map(|rung| &rung.parameters),
         "error": last.map(|rung| &rung.error),
@@ -101,11 +98,11 @@ fn comparison(discovery: &Discovery) -> Value {
         "noise_floor": discovery.noise_floor,
         "metrics": last.and_then(|rung| rung.metrics),
         "views": discovery.views,
-        "diagnosis": discovery.diagnosis,
+        "diagnosis": diagnosis,
         "notes": aep_studio::words::notes(discovery),
         "ladder": discovery.ladder,
         "seed": discovery.seed,
-    })
+    }))
 }
 
 /// How a recording was read, for the page.

@@ -2,9 +2,10 @@
 //!
 //! [`report::html`] makes one file with its styles and drawings inside: no scripts, nothing loaded
 //! from elsewhere, light or dark as the reader's system asks, and fit to print. [`words`] has the
-//! sentences that page and terminal share.
+//! sentences that page, terminal and [`json`](mod@json) share.
 
 mod html;
+pub mod json;
 mod plot;
 pub mod report;
 pub mod words;

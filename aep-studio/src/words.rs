@@ -2,13 +2,19 @@
 
 use missing_physics::measurement::quantity::{number, percent, quantity};
 use missing_physics::report::{
-    Candidate, Confirmation, Confirmed, DetectionLimit, Diagnosis, Discovery, Estimate,
-    MissingForce, NamedError, NamedValue, Rung, Surrogates, Verdict, Whiteness, floor_key,
+    Confirmation, Confirmed, DetectionLimit, Diagnosis, Discovery, Estimate, MissingForce,
+    NamedError, NamedValue, Rung, Surrogates, Verdict, Whiteness, floor_key,
 };
 
 mod axes;
 mod combinations;
 mod compared;
+mod lines;
+mod places;
+mod refusals;
+mod remains;
+mod remarks;
+mod summary;
 
 pub use axes::{AXES_HEADINGS, AxisResult, axis_row};
 pub use combinations::{combinations, not_alone};
@@ -16,6 +22,12 @@ pub use compared::{
     COMPARED, COMPARED_HEADINGS, Compared, compared, comparisons, effects_of, needed, outcome,
     why_nothing,
 };
+pub use lines::{line, relation};
+pub use places::{largest, pattern};
+pub use refusals::{reason, refusal};
+pub use remains::remains;
+pub use remarks::{disagreement, remark};
+pub use summary::{experiment, summary};
 
 /// What is said of a search that was cut, by Ctrl-C or at the end of its time.
 pub const STOPPED: &str =
@@ -103,10 +115,11 @@ pub fn is_cut(discovery: &Discovery) -> bool {
     stopped || !discovery.untried.is_empty()
 }
 
-/// What the user should know besides: that the search was cut, and the engine's own notes.
+/// What the user should know besides: that the search was cut, the engine's remarks, and what whoever asked says.
 pub fn notes(discovery: &Discovery) -> Vec<String> {
     let stopped = discovery.stopped.then(|| STOPPED.to_owned());
-    stopped.into_iter().chain(discovery.notes.iter().cloned()).collect()
+    let remarks = discovery.remarks.iter().map(remark);
+    stopped.into_iter().chain(remarks).chain(discovery.notes.iter().cloned()).collect()
 }
 
 /// Parameters of a candidate: `dF = 8.20 N, v_S = 1.10 mm/s`.
@@ -181,18 +194,6 @@ pub fn chance(p_value: f64) -> String {
     } else {
         self::p_value(p_value)
     }
-}
-
-/// What a candidate that was not to be added promises; nothing where it is not told in nats.
-pub fn suggestion(best: &Candidate) -> Option<String> {
-    let gain = nats(best.nats?);
-    let chance = chance(best.p_value);
-    let equals = if chance.starts_with('<') { "" } else { "= " };
-    Some(format!(
-        "Most likely missing: {}. One sample ahead the model with it gains {gain} nats (p {equals}{chance}). Nothing \
-         was added.",
-        best.effect
-    ))
 }
 
 /// Whether the rungs are judged by what they predict one sample ahead.
@@ -495,17 +496,6 @@ mod tests {
         assert_eq!(chance(0.0013), "0.001");
         assert_eq!(chance(0.25), "0.25");
         assert_eq!(chance(f64::NAN), "-");
-    }
-
-    #[test]
-    fn a_suggestion_names_the_effect_and_what_it_gains() {
-        let json =
-            serde_json::json!({"effect": "drift", "gain": 0.1, "p_value": 0.001, "nats": 340.2});
-        let best: Candidate = serde_json::from_value(json).unwrap();
-        let said = suggestion(&best).unwrap();
-        assert!(said.starts_with("Most likely missing: drift."), "{said}");
-        assert!(said.contains("gains +340 nats (p <= 0.001)"), "{said}");
-        assert_eq!(suggestion(&Candidate { nats: None, ..best }), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use aep_studio::{Source, report};
 use missing_physics::measurement::check::{DataCheck, check};
-use missing_physics::report::{NamedValue, Verdict};
+use missing_physics::report::{NamedValue, Reason, Verdict};
 use missing_physics::{Channel, Discovery, Recording};
 use serde_json::json;
 
@@ -73,8 +73,9 @@ fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
         "independence": [],
         "maps": [{"coordinate": coordinate, "unit": "m/s", "against_motion": true,
             "bins": [bin(0.0), bin(1.0), bin(2.0)]}],
-        "lines": [{"along": "time", "name": "50.0 Hz", "period": 0.02, "unit": "s",
-            "amplitude": 0.4, "p_value": 0.001, "note": "period 2.50 mm seen at 125 mm/s"}],
+        "lines": [{"along": "time", "period": 0.02, "unit": "s",
+            "amplitude": 0.4, "p_value": 0.001, "relation": {"kind": "seen_at", "rate": 0.125, "unit": "m/s",
+                "of": {"along": "position", "period": 0.0025, "unit": "m"}}}],
     });
     discovery.diagnosis = Some(serde_json::from_value(diagnosis).unwrap());
     let metrics = json!({"rms": 1.2, "relative": 0.03, "fit_percent": 97.1,
@@ -142,7 +143,7 @@ fn ahead() -> Discovery {
         let mut with = last.clone();
         with.push(candidate.to_owned());
         json!({"rung": rung, "candidate": with, "compared_with": last, "difference": 35.0,
-            "standard_error": 7.0, "budget": 3.1, "outcome": outcome, "reason": "so <it> is"})
+            "standard_error": 7.0, "budget": 3.1, "outcome": outcome, "because": {"kind": "rival", "rival": "so <it> is"}})
     };
     let decisions =
         json!([decision("cogging", "too_little", below), decision("drift", "worse", 1)]);
@@ -198,7 +199,8 @@ fn the_page_loads_nothing_and_runs_nothing() {
 fn names_from_files_cannot_become_markup() {
     let mut discovery = discovery();
     let evil = "<img src=x onerror=alert(1)>\"'";
-    discovery.summary = evil.to_owned();
+    discovery.most_likely = Some(evil.to_owned());
+    discovery.ranking[0][0].nats = Some(100.0);
     discovery.notes = vec![evil.to_owned()];
     discovery.ladder[0].effects = vec![evil.to_owned()];
     discovery.ladder[1].added = vec![evil.to_owned()];
@@ -212,7 +214,7 @@ fn names_from_files_cannot_become_markup() {
     for decision in &mut discovery.decisions {
         decision.candidate[0] = evil.to_owned();
         decision.compared_with = vec![evil.to_owned()];
-        decision.reason = evil.to_owned();
+        decision.because = Some(Reason::Rival { rival: evil.to_owned() });
     }
     discovery.ranking[0][0].size =
         vec![NamedValue { name: evil.to_owned(), value: 1.0, unit: evil.to_owned() }];

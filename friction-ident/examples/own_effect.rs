@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let base = ["coulomb", "viscous", "offset"].map(str::to_owned).to_vec();
     let found = discover(&family, &Settings { base, ..Settings::default() }, &mut ())?;
 
-    println!("{}", found.summary);
+    println!("{:?}: {}", found.verdict, found.added.join(", "));
     for name in ["cable-chain.dF", "cable-chain.l"] {
         let last = found.ladder.last().and_then(|rung| rung.parameters.get(name));
         println!("{name}: {last:?}");

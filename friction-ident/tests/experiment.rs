@@ -69,7 +69,7 @@ fn the_proposed_motion_tells_apart_what_the_recording_cannot() {
         let first = record(&plant, &sines(), 1);
         let family = FrictionFamily::new(&first, &Options::default()).unwrap();
         let before = found(&family);
-        assert!(!names_only(&before, truth, rival), "{truth} is no riddle: {}", before.summary);
+        assert!(!names_only(&before, truth, rival), "{truth} is no riddle: {:?}", before.added);
 
         let names = |names: [&str; 2]| names.map(str::to_owned).to_vec();
         let (below, rivals) = (names(["coulomb", "viscous"]), names([truth, rival]));
@@ -80,7 +80,7 @@ fn the_proposed_motion_tells_apart_what_the_recording_cannot() {
         let second = record(&plant, &next.reference, 2);
         let both = FrictionFamily::new(&joined(&first, &second), &Options::default()).unwrap();
         let after = found(&both);
-        assert!(names_only(&after, truth, rival), "{truth}: {}", after.summary);
+        assert!(names_only(&after, truth, rival), "{truth}: {:?}", after.added);
     }
 }
 

@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let family = family.predicting("level", "cm");
     let family = family.along(Coordinate::of_state("pump", "V", input.clone()));
     let found = discover(&family, &Settings::default(), &mut ())?;
-    println!("{:?} in {:.1} s: {}", found.verdict, found.wall_s, found.summary);
+    println!("{:?} in {:.1} s: {:?}", found.verdict, found.wall_s, found.added);
     println!("{:#?}", found.ladder[found.ladder.len() - 1].parameters);
     assert_eq!(found.added, ["overflow"]);
     Ok(())

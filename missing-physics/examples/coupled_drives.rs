@@ -84,7 +84,7 @@ fn tell(input: &[f64], output: Vec<f64>) -> Result<Vec<String>, Box<dyn Error>> 
     for one in found.ranking.first().into_iter().flatten() {
         println!("{:>18}  gain {:6.1} %  p {:.3}", one.effect, 100.0 * one.gain, one.p_value);
     }
-    println!("{:?} in {:.1} s: {}\n", found.verdict, found.wall_s, found.summary);
+    println!("{:?} in {:.1} s: {:?}\n", found.verdict, found.wall_s, found.added);
     Ok(found.added)
 }
 

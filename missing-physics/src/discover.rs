@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::ahead;
 use crate::family::ModelFamily;
 use crate::fit;
-use crate::report::Discovery;
+use crate::report::{Candidate, Discovery};
 use crate::task::{DiscoverError, Event, Observer, Settings, terms};
 
 /// Fits the base model, then searches the set of effects that it lacks, by errors one sample ahead.
@@ -60,5 +60,21 @@ pub fn suggest<F: ModelFamily + ?Sized>(
     observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {
     let once = Settings { most: 0, ..settings.clone() };
-    discover(family, &once, observer)
+    let mut discovery = discover(family, &once, observer)?;
+    let best = likely(&discovery, settings).next().map(|best| best.effect.clone());
+    discovery.most_likely = best;
+    Ok(discovery)
+}
+
+/// Candidates that may be what the base model lacks, the best first: each is rarer than
+/// [`alpha`](Settings::alpha) and gains what an effect must gain.
+pub fn likely<'a>(
+    discovery: &'a Discovery,
+    settings: &Settings<'_>,
+) -> impl Iterator<Item = &'a Candidate> {
+    let (alpha, better) = (settings.alpha, settings.thresholds.better);
+    let candidates = discovery.ranking.first().into_iter().flatten();
+    candidates.filter(move |c| {
+        c.p_value <= alpha && c.gain > 0.0 && c.nats.is_none_or(|nats| nats > better)
+    })
 }

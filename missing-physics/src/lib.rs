@@ -34,7 +34,7 @@ pub mod statistics;
 mod task;
 
 pub use confirm::confirm;
-pub use discover::{discover, suggest};
+pub use discover::{discover, likely, suggest};
 pub use family::{
     Coordinate, Fitted, FnFamily, ModelFamily, Parameter, Quantity, Regime, Role, Term,
 };

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use missing_physics::report::Verdict;
+use missing_physics::report::{Remains, Verdict};
 use missing_physics::{
     Coordinate, Discovery, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Settings, Term,
     confirm, discover,
@@ -192,7 +192,7 @@ fn two_hidden_terms_are_both_found_and_the_error_falls_to_the_noise() {
         let found = family.discover(seed);
         let mut added = found.added.clone();
         added.sort();
-        assert_eq!(added, ["cosine", "sine"], "seed {seed}: {}", found.summary);
+        assert_eq!(added, ["cosine", "sine"], "seed {seed}: {:?}", found.remains);
         assert_eq!(found.verdict, Verdict::EffectsFound);
         let error = found.ladder.last().unwrap().error["signal_rms_V"].validation;
         assert!(error < 0.08, "{error}");
@@ -220,9 +220,16 @@ fn an_error_in_a_part_of_the_time_alone_is_told_with_its_time() {
         // So quick that it is a function of nothing.
         let quick = |t: f64| if (3.0..4.5).contains(&t) { 0.3 * (1e5 * t * t).sin() } else { 0.0 };
         let found = Family::new(500 + seed, 0.02, |t, _| quick(t)).discover(seed);
-        assert_eq!(found.verdict, Verdict::Unexplained, "{}", found.summary);
+        assert_eq!(found.verdict, Verdict::Unexplained, "{:?}", found.remains);
         assert!(!found.budget.unwrap().complete);
-        assert!(found.summary.contains("time"), "{}", found.summary);
+        let at = |remains: &Remains| match remains {
+            Remains::ErrorNear { coordinate, at, .. } => {
+                coordinate == "time" && (2.9..4.6).contains(at)
+            }
+            Remains::Structure { place } => place.coordinate == "time",
+            _ => false,
+        };
+        assert!(found.remains.first().is_some_and(at), "{:?}", found.remains);
     }
 }
 
@@ -257,7 +264,7 @@ fn where_the_output_is_as_quick_as_what_is_left_only_stated_noise_makes_a_model_
     };
     let unknown = coarse(None);
     assert_eq!(unknown.verdict, Verdict::Unexplained);
-    assert!(unknown.summary.contains("too coarse"), "{}", unknown.summary);
+    assert_eq!(unknown.remains.first(), Some(&Remains::TooCoarse));
     assert_eq!(coarse(Some(0.1)).verdict, Verdict::NothingMissing);
     assert_eq!(coarse(Some(0.05)).verdict, Verdict::Unexplained);
 }
@@ -309,7 +316,7 @@ fn of_two_hidden_terms_in_loud_noise_none_is_a_wrong_one() {
         let family = Family::new(seed, 0.2, |_, x| 0.4 * x * x + 0.3 * (9.0 * x).cos());
         let found = family.discover(seed);
         let wrong = found.added.iter().any(|name| !["square", "cosine"].contains(&name.as_str()));
-        assert!(!wrong || found.verdict == Verdict::Ambiguous, "seed {seed}: {}", found.summary);
+        assert!(!wrong || found.verdict == Verdict::Ambiguous, "seed {seed}: {:?}", found.remains);
         both += usize::from(found.added.len() == 2 && !wrong);
     }
     assert!(both >= 10, "{both} of 20");

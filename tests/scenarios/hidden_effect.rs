@@ -37,7 +37,7 @@ fn what_was_hidden_is_named_with_its_size_and_holds_elsewhere() {
     for (effect, values) in cases {
         let plant = plain().with(effect, values).unwrap();
         let (family, found) = searched(&plant);
-        assert_eq!(found.added, [effect], "{}", found.summary);
+        assert_eq!(found.added, [effect], "{:?}", found.remains);
         let rung = found.ladder.last().unwrap();
         assert_eq!(rung.added, [effect]);
         let name = format!("{effect}.{}", values[0].0);
@@ -68,7 +68,7 @@ fn what_belongs_to_a_recording_does_not_speak_against_an_effect() {
             .unwrap()
     };
     let (family, found) = searched(&plant(180.0));
-    assert_eq!(found.added, ["ripple"], "{}", found.summary);
+    assert_eq!(found.added, ["ripple"], "{:?}", found.remains);
     let home = 1.7e-3;
     let other = record(&plant(150.0));
     let channels = other.channels().iter().map(|channel| {
@@ -97,7 +97,7 @@ fn two_strong_effects_that_hide_each_other_are_both_named() {
     let main = |name: &String| name.split(':').next().unwrap_or_default().to_owned();
     let mut named: Vec<String> = found.added.iter().map(main).collect();
     named.sort();
-    assert_eq!(named, ["position-friction", "ripple"], "{}", found.summary);
+    assert_eq!(named, ["position-friction", "ripple"], "{:?}", found.remains);
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn where_nothing_is_hidden_nothing_is_named() {
     assert_eq!(
         (found.verdict, found.added.len()),
         (Verdict::NothingMissing, 0),
-        "{}",
-        found.summary
+        "{:?}",
+        found.remains
     );
 }

@@ -20,6 +20,6 @@ fn a_discovery_is_the_same_to_the_bit_on_one_two_and_seven_threads() {
         })
     };
     let one = on(1);
-    assert_eq!(one["added"][0], "quadratic-drag", "{}", one["summary"]);
+    assert_eq!(one["added"][0], "quadratic-drag", "{}", one["remains"]);
     assert!(on(2) == one && on(7) == one);
 }

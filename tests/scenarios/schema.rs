@@ -26,7 +26,7 @@ fn a_discovery_is_what_the_published_schema_says() {
     let mut found = discover(&family, &settings, &mut ()).unwrap();
     let rungs = confirm(&family, &found.ladder, &settings).unwrap();
     found.confirmation = Some(Confirmed { recording: "the same".into(), rungs });
-    let json = serde_json::to_value(&found).unwrap();
+    let json = aep_studio::json::json(&found).unwrap();
     checked(&json).unwrap();
     // A field that nobody has published, and a number that became a sentence, are seen.
     let mut more = json.clone();

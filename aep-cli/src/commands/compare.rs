@@ -85,7 +85,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let (views, mut notes) = side_by_side(&family, &paths, &fits, watch)?;
     discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
     let warnings = output::warnings(&views, &notes);
-    notes.splice(0..0, diagnosis::views::disagreements(&views));
+    let between = diagnosis::views::disagreements(&views);
+    notes.splice(0..0, between.iter().map(aep_studio::words::disagreement));
     notes.append(&mut discovery.notes);
     let stopped = watch.is_over();
     discovery.stopped |= stopped;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use aep_studio::words;
-use missing_physics::suggest;
+use missing_physics::{likely, suggest};
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
 
@@ -69,25 +69,17 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     progress.say("fitting the model");
     progress.within(settings.time_limit);
-    let mut discovery = suggest(&family, &settings, &mut progress)?;
+    let discovery = suggest(&family, &settings, &mut progress)?;
     let candidates = discovery.ranking.first().cloned().unwrap_or_default();
     let better = settings.thresholds.better;
-    let likely = candidates.iter().filter(|c| {
-        c.p_value <= settings.alpha && c.gain > 0.0 && c.nats.is_none_or(|nats| nats > better)
-    });
     let mut proposal = Proposal::default();
     if let Some(path) = args.experiment.as_ref().filter(|_| !watch.is_interrupted()) {
         progress.say("looking for an experiment that tells them apart");
         let rivals: Vec<String> =
-            likely.clone().take(RIVALS).map(|candidate| candidate.effect.clone()).collect();
+            likely(&discovery, &settings).take(RIVALS).map(|candidate| candidate.effect.clone()).collect();
         proposal = propose(&family, &settings.base, &rivals, path, args.run.seed)?;
     }
-    let mut likely = likely;
-    let likely = likely.next();
     drop(progress);
-    if let Some(summary) = likely.and_then(words::suggestion) {
-        discovery.summary = summary;
-    }
     let data = check(&loaded.recording);
     let more = proposal.more;
     let report = Report {
@@ -103,14 +95,14 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if quiet {
         return watch.end();
     }
-    let next = match likely {
+    let next = match &discovery.most_likely {
         Some(best) => format!(
             "Try it: aep extend {}{}{}{} --add {} -o better.json\n",
             args.data.words(),
             args::flag("model", args.model.as_ref().map(|path| path.display())),
             args::flag("bandwidth", args.bandwidth),
             args.known.words(),
-            best.effect
+            best
         ),
         None if words::is_cut(&discovery) => {
             "No effect was found before the search was stopped.\n".to_owned()

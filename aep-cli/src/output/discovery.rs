@@ -48,7 +48,7 @@ pub fn verdict(discovery: &Discovery) -> String {
     if let Some(said) = words::missing_force(discovery) {
         let _ = writeln!(text, " {said}");
     }
-    for line in wrapped(&discovery.summary) {
+    for line in wrapped(&words::summary(discovery)) {
         let _ = writeln!(text, " {line}");
     }
     text += &notes(discovery);
@@ -310,7 +310,7 @@ pub fn where_it_fails(places: &[Where]) -> String {
             percent(place.share),
             words::p_value(place.p_value),
             // The heading says it once for all.
-            place.largest(),
+            words::largest(place),
         ]);
     }
     others(table.text())
@@ -473,10 +473,10 @@ mod tests {
             "size": sizes, "nats": budget.then_some(812.3)});
         let decision = |set: &[&str], outcome: &str, difference: f64| {
             json!({"rung": set.len() - 1, "candidate": set, "compared_with": ["coulomb"], "difference": difference,
-                "standard_error": 15.0, "budget": 1.04, "outcome": outcome, "reason": "the best set of 1"})
+                "standard_error": 15.0, "budget": 1.04, "outcome": outcome, "because": {"kind": "best_of_size"}})
         };
         let mut json = json!({
-            "verdict": "effects_found", "summary": "Missing: position-friction:fine.",
+            "verdict": "effects_found",
             "added": ["position-friction:fine"],
             "ladder": [rung(None, &["coulomb"], 0.05, 12.52),
                 rung(Some("position-friction:fine"), &["coulomb", "position-friction:fine"], 0.02, 1.04)],

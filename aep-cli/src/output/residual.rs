@@ -35,11 +35,11 @@ pub fn lines(discovery: &Discovery, diagnosis: &Diagnosis) -> String {
     ]);
     for line in &diagnosis.lines {
         table.row([
-            line.name.clone(),
+            words::line(line),
             line.along.clone(),
             quantity(line.amplitude, &unit),
             words::p_value(line.p_value),
-            line.note.clone(),
+            words::relation(line),
         ]);
     }
     table.text()

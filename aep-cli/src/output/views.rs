@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use aep_studio::words;
 use missing_physics::measurement::quantity::{percent, quantity};
 use missing_physics::report::View;
 
@@ -63,7 +64,8 @@ fn numbers(view: &View) -> [String; 6] {
 
 /// What the user should know about the views: warnings of each, each once, and where they disagree.
 pub fn warnings(models: &[(String, Vec<View>)], notes: &[String]) -> String {
-    let mut said: Vec<String> = missing_physics::diagnosis::views::disagreements(models);
+    let between = missing_physics::diagnosis::views::disagreements(models);
+    let mut said: Vec<String> = between.iter().map(words::disagreement).collect();
     let mut warned: Vec<&str> = Vec::new();
     for view in models.iter().flat_map(|(_, views)| views) {
         // What holds for a view holds for it with the next model, too.

@@ -22,7 +22,7 @@ fn ambiguous(discovery: &Discovery) -> String {
             "<div class=doubt><p>{}: which of them is at work does not follow from this data.</p>\
                  <p>The experiment that would tell: {}</p></div>",
             names.join(" or "),
-            escape(&choice.experiment)
+            escape(&words::experiment(choice))
         )
     }))
 }

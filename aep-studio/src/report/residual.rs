@@ -42,7 +42,11 @@ fn lines(discovery: &Discovery, diagnosis: &Diagnosis) -> String {
         .iter()
         .map(|line| {
             vec![
-                format!("{}<small>{}</small>", escape(&line.name), escape(&line.note)),
+                format!(
+                    "{}<small>{}</small>",
+                    escape(&words::line(line)),
+                    escape(&words::relation(line))
+                ),
                 escape(&line.along),
                 escape(&quantity(line.amplitude, &unit)),
                 escape(&words::p_value(line.p_value)),

@@ -18,7 +18,7 @@ pub(super) fn head(discovery: &Discovery, source: &Source) -> String {
         escape(&source.name),
         headline(discovery),
         completeness(discovery),
-        escape(&discovery.summary),
+        escape(&words::summary(discovery)),
         numbers(discovery),
     )
 }

@@ -85,7 +85,7 @@ fn listed(places: &[&Where]) -> String {
                 format!(
                     "{}<small>{}</small>",
                     escape(&place.coordinate),
-                    escape(&place.in_words())
+                    escape(&words::pattern(place))
                 ),
                 bar(place.share, class),
                 percent(place.share),

@@ -101,7 +101,10 @@ pub fn outcome(discovery: &Discovery, decision: &Decision, thresholds: &Threshol
             effects => format!("{} dropped", effects.join(" + ")),
         },
     };
-    if decision.reason.is_empty() { words } else { format!("{words} ({})", decision.reason) }
+    match super::reason(decision) {
+        None => words,
+        Some(reason) => format!("{words} ({reason})"),
+    }
 }
 
 /// Effects that the candidate does without.
@@ -216,6 +219,7 @@ fn refusal(discovery: &Discovery, decision: &Decision, thresholds: &Thresholds) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use missing_physics::report::Reason;
     use serde_json::{Value, json};
 
     fn decision(rung: usize, candidate: &str, with: &str, difference: f64, outcome: &str) -> Value {
@@ -285,7 +289,8 @@ mod tests {
             let decision: Decision =
                 serde_json::from_value(decision(1, "a", "", 5.0, name)).unwrap();
             assert_eq!(outcome(&found, &decision, &Thresholds::default()), words);
-            let reason = Decision { reason: "so".to_owned(), ..decision };
+            let because = Some(Reason::Rival { rival: "so".to_owned() });
+            let reason = Decision { because, ..decision };
             assert_eq!(outcome(&found, &reason, &Thresholds::default()), format!("{words} (so)"));
         }
     }

@@ -12,3 +12,18 @@ pub struct AsFound<'a> {
     /// Root mean square of the recorded force.
     pub force: f64,
 }
+
+/// Why a fitted effect no longer is that effect: a value at which it ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refused {
+    /// The parameter, or what several of them make.
+    pub name: &'static str,
+    /// Its value, SI.
+    pub value: f64,
+    /// What it was held against, SI.
+    pub limit: f64,
+    /// Parameter of the table whose unit both have.
+    pub unit_of: &'static str,
+    /// What it means, in a few words.
+    pub meaning: &'static str,
+}

@@ -3,7 +3,8 @@
 mod two_mass;
 
 use super::{
-    About, AsFound, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, AsFound, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Refused, Slot,
+    Taken,
 };
 use crate::axis::Quantity;
 use crate::simd::sign;
@@ -47,14 +48,21 @@ impl Effect for Backlash {
         Some(self)
     }
 
-    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         closed(found.values[1], found.least[1])
     }
 }
 
 /// Why a gap is none that is as narrow as its search allows: it is a coupling then.
-fn closed(gap: f64, least: f64) -> Option<String> {
-    (gap <= CLOSED * least).then(|| ".b is as narrow as it may be".to_owned())
+fn closed(gap: f64, least: f64) -> Option<Refused> {
+    let limit = CLOSED * least;
+    (gap <= limit).then_some(Refused {
+        name: "b",
+        value: gap,
+        limit,
+        unit_of: "b",
+        meaning: "the gap is as narrow as it may be",
+    })
 }
 
 /// State: place of the drive in the gap, -1/2..1/2 of its width.

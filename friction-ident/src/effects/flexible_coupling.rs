@@ -5,8 +5,8 @@ mod friction;
 use std::f64::consts::TAU;
 
 use super::{
-    About, AsFound, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot,
-    Step, Trials,
+    About, AsFound, Correction, Effect, Element, Onset, Parameter, Parameters, Refused, Response,
+    Slot, Step, Trials,
 };
 use crate::axis::Quantity;
 use crate::simd::add_to;
@@ -32,8 +32,14 @@ const ZETA: Parameter =
 const SILENT: f64 = 0.383;
 
 /// Why a coupling with this damping ratio is none.
-fn silent(zeta: f64) -> Option<String> {
-    (zeta >= SILENT).then(|| format!(".zeta is {zeta:.2}: nothing rings"))
+fn silent(zeta: f64) -> Option<Refused> {
+    (zeta >= SILENT).then_some(Refused {
+        name: "zeta",
+        value: zeta,
+        limit: SILENT,
+        unit_of: "zeta",
+        meaning: "nothing rings",
+    })
 }
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];
@@ -69,7 +75,7 @@ impl Effect for FlexibleCoupling {
         Some(self)
     }
 
-    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         silent(found.values[2])
     }
 }

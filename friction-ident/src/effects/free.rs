@@ -5,7 +5,7 @@
 
 use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
-use missing_physics::measurement::quantity::quantity;
+use missing_physics::report::Course;
 
 /// Knots over the recording or the stroke; straight between them, 0 at the first one, so that nothing competes with
 /// `coulomb` or `offset`.
@@ -32,8 +32,8 @@ pub struct ForceOverPosition;
 pub struct Free {
     /// Its law. Its values are 0 where there is nothing.
     pub effect: &'static dyn Effect,
-    /// What it is, in words.
-    pub words: &'static str,
+    /// What it is.
+    pub title: &'static str,
     /// Effects that are one shape of it.
     pub kin: &'static [&'static str],
 }
@@ -42,18 +42,18 @@ pub struct Free {
 pub static RIVALS: [Free; 4] = [
     Free {
         effect: &FrictionOverTime,
-        words: "a friction level that varies freely with time",
+        title: "a friction level that varies freely with time",
         kin: &["drift"],
     },
     Free {
         effect: &FrictionStep,
-        words: "a friction level that changes at one moment",
+        title: "a friction level that changes at one moment",
         kin: &["drift"],
     },
-    Free { effect: &ForceOverTime, words: "a force that varies freely with time", kin: &[] },
+    Free { effect: &ForceOverTime, title: "a force that varies freely with time", kin: &[] },
     Free {
         effect: &ForceOverPosition,
-        words: "a force that varies freely along the stroke",
+        title: "a force that varies freely along the stroke",
         kin: &["spring", "gravity-pendulum", "ripple"],
     },
 ];
@@ -229,18 +229,19 @@ pub struct Span<'a> {
     pub unit: &'a str,
 }
 
-/// What a rival was found to be, in words; over the recording and the stroke. Nothing for an effect.
-pub fn words(
+/// What a rival was found to be, over the recording and the stroke. Nothing for an effect.
+pub fn course(
     name: &str,
     values: &[f64],
     (time, stroke): (Span<'_>, Span<'_>),
     unit: &str,
-) -> Option<String> {
+) -> Option<Course> {
     let span = if name == ALONG.name { stroke } else { time };
-    let moment = |share: f64| quantity(span.begin + (span.end - span.begin) * share, span.unit);
+    let moment = |share: f64| span.begin + (span.end - span.begin) * share;
+    let (unit, along_unit) = (unit.to_owned(), span.unit.to_owned());
     match (name, values) {
         ("friction-step", [change, share]) => {
-            Some(format!("it changes by {} at {}", quantity(*change, unit), moment(*share)))
+            Some(Course::Step { change: *change, at: moment(*share), unit, along_unit })
         }
         ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
             let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
@@ -249,12 +250,8 @@ pub fn words(
             let jump = |k: &usize| (knots[k + 1] - knots[*k]).abs();
             let most = (0..FREE).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
             let at = |k: usize| moment(k as f64 / FREE as f64);
-            Some(format!(
-                "it varies over a range of {}, most of all between {} and {}",
-                quantity(high - low, unit),
-                at(most),
-                at(most + 1)
-            ))
+            let (from, to) = (at(most), at(most + 1));
+            Some(Course::Varies { range: high - low, from, to, unit, along_unit })
         }
         _ => None,
     }
@@ -286,16 +283,28 @@ mod tests {
     }
 
     #[test]
-    fn words_say_how_much_and_when() {
+    fn a_course_says_how_much_and_when() {
         let mut values = vec![0.0; FREE];
         values[10..].fill(-1.7);
         let span = |end, unit| Span { begin: 0.0, end, unit };
-        let told = |name, values| words(name, values, (span(23.0, "s"), span(0.23, "m")), "N");
-        let free = "it varies over a range of 1.70 N, most of all between 10.0 s and 11.0 s";
-        assert_eq!(told("friction-over-time", &values).unwrap(), free);
-        let along = "it varies over a range of 1.70 N, most of all between 100 mm and 110 mm";
-        assert_eq!(told("force-over-position", &values).unwrap(), along);
-        let step = "it changes by -1.70 N at 11.5 s";
+        let told = |name, values| course(name, values, (span(23.0, "s"), span(0.23, "m")), "N");
+        let varies = |from: f64, to: f64, along_unit: &str| Course::Varies {
+            range: 1.7,
+            from,
+            to,
+            unit: "N".into(),
+            along_unit: along_unit.into(),
+        };
+        assert_eq!(told("friction-over-time", &values).unwrap(), varies(10.0, 11.0, "s"));
+        let Some(Course::Varies { range, from, to, unit, along_unit }) =
+            told("force-over-position", &values)
+        else {
+            panic!("it varies")
+        };
+        assert_eq!((range, unit.as_str(), along_unit.as_str()), (1.7, "N", "m"));
+        assert!((from - 0.1).abs() < 1e-12 && (to - 0.11).abs() < 1e-12, "{from} {to}");
+        let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
+        let step = Course::Step { change: -1.7, at: 11.5, unit, along_unit };
         assert_eq!(told("friction-step", &[-1.7, 0.5]).unwrap(), step);
         assert_eq!(told("stribeck", &[1.0]), None);
     }

@@ -56,7 +56,7 @@ use missing_physics::Recording;
 use crate::axis::Axis;
 
 pub use about::{About, Parameter, Role, Scale, Slot};
-pub use as_found::AsFound;
+pub use as_found::{AsFound, Refused};
 pub use drive::{Advance, Drive};
 pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
@@ -126,7 +126,7 @@ pub trait Effect: Sync + Send {
 
     /// Why it is no such effect as it was fitted (a gap of no width), in words that go on after its name; nothing where it
     /// is one.
-    fn refused(&self, _found: &AsFound<'_>) -> Option<String> {
+    fn refused(&self, _found: &AsFound<'_>) -> Option<Refused> {
         None
     }
 

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use aep_core::Scale;
 use missing_physics::family::{Ahead, Columns, Own, Rival, Series, Trial, trials};
+use missing_physics::report::{Fault, Refusal};
 use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
 
 use super::FrictionFamily;
@@ -179,15 +180,9 @@ impl Ahead for View<'_> {
         &self.ahead.instants
     }
 
-    fn faults(&self) -> Option<String> {
+    fn faults(&self) -> Option<Fault> {
         let share = self.ahead.predictor.stale();
-        (share > 0.0).then(|| {
-            format!(
-                "{:.2} % of the samples repeat the position before them while the axis moves: they were dropped, or the \
-                 recorder reads slower than it writes. They were left out.",
-                100.0 * share
-            )
-        })
+        (share > 0.0).then_some(Fault::Repeated { share })
     }
 
     fn along(&self) -> Vec<(String, String, Vec<f64>)> {
@@ -252,7 +247,7 @@ impl Ahead for View<'_> {
         rivals(self.family)
     }
 
-    fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
+    fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
         self.family.vanishes(model)
     }
 
@@ -270,7 +265,7 @@ pub(super) fn rivals(family: &FrictionFamily) -> Vec<Rival> {
     let term = |name: &str| family.terms.iter().position(|term| term.name == name);
     let rival = |free: &Free| {
         let kin = free.kin.iter().filter_map(|name| term(name)).collect();
-        Some(Rival { term: term(free.effect.about().name)?, words: free.words, kin })
+        Some(Rival { term: term(free.effect.about().name)?, title: free.title, kin })
     };
     RIVALS.iter().filter_map(rival).collect()
 }

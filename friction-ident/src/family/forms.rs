@@ -2,9 +2,10 @@
 
 use missing_physics::Fitted;
 use missing_physics::family::Trial;
+use missing_physics::report::{NamedValue, Refusal};
 
 use super::FrictionFamily;
-use crate::effects::{AsFound, Effect};
+use crate::effects::{AsFound, Effect, Refused};
 
 /// Each form and the more flexible one that takes its place before another effect is named.
 const FLEXIBLE: [(&str, &str); 13] = [
@@ -244,7 +245,7 @@ impl FrictionFamily {
     }
 
     /// A term that is no such effect as it was fitted, and why.
-    pub(super) fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
+    pub(super) fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
         let vanished = self.given.as_ref().and_then(|given| given.vanishes(self, model));
         vanished.or_else(|| {
             model.terms.iter().enumerate().find_map(|(place, term)| {
@@ -257,8 +258,17 @@ impl FrictionFamily {
                     mass: self.mass_of(model),
                     force: self.force(),
                 };
-                let why = effect.refused(&found)?;
-                Some((*term, format!("{}{why}", effect.about().name)))
+                let Refused { name, value, limit, unit_of, meaning } = effect.refused(&found)?;
+                let unit = effect.about().parameter(unit_of).map_or("", |k| {
+                    self.effort.unit(self.axis, effect.about().parameters[k].quantity)
+                });
+                let refusal = Refusal::NotThatEffect {
+                    effect: effect.about().name.to_owned(),
+                    value: NamedValue { name: name.to_owned(), value, unit: unit.to_owned() },
+                    limit,
+                    meaning: meaning.to_owned(),
+                };
+                Some((*term, refusal))
             })
         })
     }
@@ -338,7 +348,7 @@ mod tests {
     }
 
     /// Why a second body of 10 kg behind 20 kg is none, with these values in the place of sensible ones.
-    fn said(family: &FrictionFamily, name: &str, values: &[(&str, f64)]) -> Option<String> {
+    fn said(family: &FrictionFamily, name: &str, values: &[(&str, f64)]) -> Option<Refusal> {
         let term = family.terms.iter().position(|term| term.name == name).unwrap();
         let value = |p: &Parameter| {
             let given = values.iter().find(|(name, _)| *name == p.name).map(|(_, value)| *value);
@@ -356,8 +366,13 @@ mod tests {
         let family = family();
         for name in ["flexible-coupling", "flexible-coupling:friction", "flexible-coupling:load"] {
             assert_eq!(said(&family, name, &[("zeta", 0.3)]), None, "{name}");
-            let why = said(&family, name, &[("zeta", 0.5)]).unwrap();
-            assert_eq!(why, format!("{name}.zeta is 0.50: nothing rings"));
+            let Some(Refusal::NotThatEffect { effect, value, meaning, .. }) =
+                said(&family, name, &[("zeta", 0.5)])
+            else {
+                panic!("{name} rings")
+            };
+            assert_eq!((effect.as_str(), meaning.as_str()), (name, "nothing rings"));
+            assert_eq!((value.name.as_str(), value.value, value.unit.as_str()), ("zeta", 0.5, "1"));
         }
     }
 
@@ -365,12 +380,21 @@ mod tests {
     fn a_gap_must_be_wider_than_its_contact_gives() {
         // A third of the force bends the contact: 7 N.
         let family = family();
-        let gap = |k: f64, b: f64| said(&family, "backlash:two-mass", &[("k", k), ("b", b)]);
+        let gap = |k: f64, b: f64| match said(&family, "backlash:two-mass", &[("k", k), ("b", b)])?
+        {
+            Refusal::NotThatEffect { value, limit, meaning, .. } => {
+                assert_eq!(value.unit, "m");
+                Some((value.value, limit, meaning))
+            }
+            other => panic!("{other:?}"),
+        };
         assert_eq!(gap(1e7, 3e-5), None);
         assert_eq!(gap(1e6, 3e-5), None);
-        assert!(gap(3e5, 3e-5).unwrap().ends_with("gives more than its gap is wide"));
+        let (gives, half, meaning) = gap(3e5, 3e-5).unwrap();
+        assert!(meaning.ends_with("gives more than its gap is wide"), "{meaning}");
+        assert!(gives > half && (half - 1.5e-5).abs() < 1e-12, "{gives} {half}");
         let least = family.terms.iter().find(|term| term.name == "backlash:two-mass").unwrap();
         let least = least.parameters.iter().find(|p| p.name == "b").unwrap().lower;
-        assert!(gap(1e9, least).unwrap().contains("as narrow as it may be"));
+        assert!(gap(1e9, least).unwrap().2.contains("as narrow as it may be"));
     }
 }

@@ -18,6 +18,7 @@ mod errors;
 use std::ops::Range;
 
 use missing_physics::ahead::whitening::Whitening;
+use missing_physics::report::Refusal;
 use missing_physics::statistics::basis::{gram, solve};
 use missing_physics::{Fitted, ModelFamily, Term};
 
@@ -51,10 +52,6 @@ const LEAST_OF_NOISE: f64 = 1.0;
 pub(super) const UNSEEN: [&str; 2] = ["encoder", "actuator-lag:second-order"];
 /// Effects of which another model may have too much.
 const DEVIATIONS: [&str; 4] = ["coulomb", "viscous", "quadratic-drag", "spring"];
-/// What is said of how the recording was read.
-pub(super) const READING: &str = "The force that your model gives is taken over time, nothing of ours beside it. What its \
-    samples and filters make is fitted and no effect: a shift of up to 1.5 samples (timing.shift) and a smoothing \
-    (timing.smoothing). Rests and reversals are left out, where a force made of velocities says nothing.";
 /// Trial shifts by which the noise is judged.
 const SHIFTS: i32 = 6;
 /// Forces below this share of the recorded one are not looked for: no two programs agree better.
@@ -119,11 +116,11 @@ impl Given {
 
     /// What is no effect as it was fitted: smaller than what filters and differentiation make of a force that lacks
     /// nothing, or no longer than the timing of samples.
-    pub fn vanishes(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+    pub fn vanishes(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, Refusal)> {
         self.too_small(family, model).or_else(|| Self::too_short(family, model))
     }
 
-    fn too_small(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+    fn too_small(&self, family: &FrictionFamily, model: &Fitted) -> Option<(usize, Refusal)> {
         let rms = |values: &[f64]| {
             let square: f64 = values.iter().map(|value| value * value).sum();
             (square / values.len().max(1) as f64).sqrt()
@@ -139,11 +136,11 @@ impl Given {
                 _ => f64::INFINITY,
             };
             if of_given < LEAST_OF_GIVEN {
-                let text = format!(
-                    "{name} is {:.1} % of what the given force has: filters make as much of it",
-                    100.0 * of_given
-                );
-                return Some((*term, text));
+                let (share, least) = (of_given, LEAST_OF_GIVEN);
+                return Some((
+                    *term,
+                    Refusal::ShareOfGiven { effect: name.to_owned(), share, least },
+                ));
             }
             let without = missing_physics::fit::predict(family, &model.without(family, *term));
             let change: Vec<f64> = all.iter().zip(&without).map(|(a, b)| a - b).collect();
@@ -153,23 +150,19 @@ impl Given {
             let moves = of_given.is_finite()
                 || slots.contains(&Slot::Drive)
                 || slots.contains(&Slot::Attached);
-            if moves && change < LEAST_OF_NOISE * self.whitening.budget {
-                let text = format!("{name} makes no more than noise that moves the axis can");
-                return Some((*term, text));
+            let effect = name.to_owned();
+            let noise = LEAST_OF_NOISE * self.whitening.budget;
+            if moves && change < noise {
+                let unit = family.quantity().unit;
+                return Some((*term, Refusal::WithinNoise { effect, change, noise, unit }));
             }
-            (share < LEAST_OF_FORCE).then(|| {
-                (
-                    *term,
-                    format!(
-                        "{name} makes {:.2} % of the force: filters make as much",
-                        100.0 * share
-                    ),
-                )
-            })
+            let least = LEAST_OF_FORCE;
+            let refusal = Refusal::ShareOfQuantity { effect, share, least };
+            (share < least).then_some((*term, refusal))
         })
     }
 
-    fn too_short(family: &FrictionFamily, model: &Fitted) -> Option<(usize, String)> {
+    fn too_short(family: &FrictionFamily, model: &Fitted) -> Option<(usize, Refusal)> {
         let most = MOST_SHIFT * family.prepared.interval;
         model.terms.iter().enumerate().find_map(|(place, term)| {
             let about = family.effects[term.checked_sub(1)?].about();
@@ -181,10 +174,8 @@ impl Given {
             let times: Vec<f64> =
                 parameters.filter(|(p, _)| p.unit == "s").map(|(_, value)| *value).collect();
             let short = !times.is_empty() && times.iter().sum::<f64>() <= most;
-            short.then(|| {
-                let text = format!("{} is within {MOST_SHIFT} samples: their timing", about.name);
-                (*term, text)
-            })
+            let effect = about.name.to_owned();
+            short.then_some((*term, Refusal::WithinSamples { effect, samples: MOST_SHIFT }))
         })
     }
 }

@@ -5,6 +5,7 @@
 
 use missing_physics::ahead::fit::Fitter;
 use missing_physics::ahead::statistics;
+use missing_physics::report::Remark;
 use missing_physics::{Hold, ModelFamily, Recording, fit, terms};
 
 use super::ahead::View;
@@ -53,19 +54,10 @@ pub(super) fn decided(
 }
 
 impl HoldChoice {
-    /// What was decided, in words.
-    pub(super) fn words(self) -> String {
-        let how = match self.hold {
-            Hold::ZeroOrder => "held from one sample to the next",
-            Hold::Sampled => "sampled, changing evenly between samples",
-        };
-        let why = if self.by_search {
-            "the simplest model hardly tells, the best model with one effect predicts better so"
-                .to_owned()
-        } else {
-            format!("that predicts better by {:.0} nats", self.nats)
-        };
-        format!("The force is taken as {how}: {why}.")
+    /// What was decided about this input.
+    pub(super) fn remark(self, input: String) -> Remark {
+        let Self { hold, nats, by_search } = self;
+        Remark::Read { input, hold, nats, by_search }
     }
 }
 

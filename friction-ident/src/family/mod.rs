@@ -4,6 +4,7 @@
 //! Every effect of the library is a candidate term; the mass is part of every model.
 
 mod ahead;
+mod apart;
 pub mod compare;
 mod coordinates;
 pub mod experiment;
@@ -23,13 +24,12 @@ mod regimes;
 mod surrogates;
 mod sweep;
 mod views;
-mod words;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use missing_physics::family::{Ahead, FullRate, Generic};
-use missing_physics::report::{NamedError, Plot};
+use missing_physics::family::{Ahead, FullRate, Generic, sizes};
+use missing_physics::report::{Course, NamedError, Plot, Remark};
 use missing_physics::statistics::basis::{dot, gram, solve};
 use missing_physics::statistics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
@@ -585,11 +585,12 @@ impl ModelFamily for FrictionFamily {
         Some((self.other_hold.as_deref()?, self.hold?.nats))
     }
 
-    fn reading(&self) -> Option<String> {
+    fn reading(&self) -> Option<Remark> {
+        let input = self.quantity().name;
         if self.given.is_some() {
-            return Some(given::READING.to_owned());
+            return Some(Remark::Given { input, most_shift: given::MOST_SHIFT });
         }
-        self.hold.map(HoldChoice::words)
+        self.hold.map(|hold| hold.remark(input))
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
@@ -655,19 +656,19 @@ impl ModelFamily for FrictionFamily {
         BTreeMap::from([(unit.to_owned(), self.prepared.position_noise)])
     }
 
-    fn describe(&self, term: usize, values: &[f64]) -> String {
+    fn course(&self, term: usize, values: &[f64]) -> Course {
         let about = &self.terms[term];
         let unit = about.parameters.first().map_or("", |parameter| &parameter.unit);
         let moment = |name| self.fixed(name).unwrap_or_default();
         let time = Span { begin: moment("begin"), end: moment("finish"), unit: "s" };
         let length = if self.axis == Axis::Rotary { "rad" } else { "m" };
         let stroke = Span { begin: self.stroke.0, end: self.stroke.1, unit: length };
-        let rival = free::words(&about.name, values, (time, stroke), unit);
-        rival.unwrap_or_else(|| words::describe(about, values))
+        let course = free::course(&about.name, values, (time, stroke), unit);
+        course.unwrap_or_else(|| Course::Values { values: sizes(about, values) })
     }
 
-    fn experiment(&self, terms: &[String]) -> String {
-        words::experiment(terms)
+    fn experiment(&self, terms: &[String]) -> Option<String> {
+        Some(apart::experiment(terms))
     }
 
     fn generic_term(&self, coordinate: &Coordinate, shape: &Generic) -> Option<String> {

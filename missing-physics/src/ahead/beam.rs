@@ -18,7 +18,7 @@ use super::node::Node;
 use super::screen::{Screened, screen};
 use super::{Ahead, scales};
 use crate::family::{Fitted, ModelFamily, Role};
-use crate::report::{Decision, Outcome};
+use crate::report::{Decision, Outcome, Reason, Refusal, Remains, Remark};
 use crate::task::{Event, Thresholds};
 
 /// Steps of a first fit, of a refit elsewhere, and of the last one.
@@ -36,10 +36,6 @@ const INSIDE: f64 = 1.12;
 const GONE: f64 = 0.01;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
-
-/// What is told of rivals where time ran out before them.
-const UNASKED: &str =
-    "Whether something that varies freely with time does as much was not asked any more.";
 
 /// What searches that share an observer tell it by.
 pub type Tell<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
@@ -73,7 +69,7 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     candidates: Vec<usize>,
     /// Every comparison so far.
     pub decisions: Vec<Decision>,
-    notes: Vec<String>,
+    remarks: Vec<Remark>,
     stop: &'a (dyn Fn() -> bool + Sync),
     tell: Tell<'a>,
     untried: BTreeSet<usize>,
@@ -98,7 +94,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             thresholds,
             candidates,
             decisions: Vec::new(),
-            notes: Vec::new(),
+            remarks: Vec::new(),
             stop,
             tell,
             untried: BTreeSet::new(),
@@ -153,24 +149,25 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         loop {
             let (needed, costs) = self.prune(&climb, best);
             let last = self.plainest(needed, &costs);
-            if let Some((term, reason)) = self.refused(&climb.base, &last) {
+            if let Some((term, refusal)) = self.refused(&climb.base, &last) {
                 // Its last fit took it there.
                 let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
                 if let Some((_, cost, without)) = costs.iter().find(is).or(costs.last()) {
                     let (size, cost) = (costs.len() - 1, negative(*cost));
-                    self.note(size, without, &last, cost, Outcome::NotIdentifiable, &reason);
+                    let because = Some(Reason::Refused { refusal });
+                    self.note(size, without, &last, cost, Outcome::NotIdentifiable, because);
                     best = without.clone();
                     continue;
                 }
             }
             if rival.is_none() {
-                if let Some((without, text)) = self.rivalled(&climb, &last) {
-                    rival = Some(text);
+                if let Some((without, found)) = self.rivalled(&climb, &last) {
+                    rival = Some(found);
                     best = without;
                     continue;
                 }
                 let unasked = (self.stop)() && !costs.is_empty() && !self.ahead.rivals().is_empty();
-                rival = unasked.then(|| UNASKED.to_owned());
+                rival = unasked.then_some(Remains::RivalsUnasked);
             }
             let mut beside = self.beside(&last);
             if beside.promises.is_empty() {
@@ -183,7 +180,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 return self.conclude(climb, &last, costs, beside, rival);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));
-            self.note(size, without, &last, cost, Outcome::Dropped, "chance gains as much");
+            self.note(size, without, &last, cost, Outcome::Dropped, Some(Reason::Chance));
             best = without.clone();
         }
     }
@@ -283,7 +280,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         with: &Node,
         by: Difference,
         outcome: Outcome,
-        reason: &str,
+        because: Option<Reason>,
     ) {
         self.decisions.push(Decision {
             rung,
@@ -293,14 +290,14 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             standard_error: self.in_full(by.error),
             budget: self.budget(candidate),
             outcome,
-            reason: reason.to_owned(),
+            because,
         });
     }
 
     /// The effect of a set that is not one as it was fitted, and why, if any: an amplitude ended at the limit of its
     /// search, what makes it that effect is gone (a gap of no width), or it left nothing of what every model has (a
     /// mass).
-    fn refused(&self, base: &Node, node: &Node) -> Option<(usize, String)> {
+    fn refused(&self, base: &Node, node: &Node) -> Option<(usize, Refusal)> {
         let moved = scales::of(self.family, &node.model);
         for (place, index) in node.model.terms.iter().enumerate() {
             let term = &self.family.terms()[*index];
@@ -313,13 +310,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 match base.model.values.get(k) {
                     Some(before) if term.always && parameter.lower >= 0.0 && gone(*before) => {
                         let last = *node.model.terms.last()?;
-                        return Some((last, format!("nothing of {} is left", key())));
+                        return Some((last, Refusal::NothingLeft { parameter: key() }));
                     }
                     None if moved[k].is_at_far_limit() => {
-                        return Some((
-                            *index,
-                            format!("{} ended at the limit of its search", key()),
-                        ));
+                        return Some((*index, Refusal::AtLimit { parameter: key() }));
                     }
                     _ => {}
                 }

@@ -10,8 +10,7 @@ use super::screen::Promise;
 use super::{Ahead, local};
 use crate::family::Series;
 use crate::family::{Fitted, ModelFamily};
-use crate::measurement::quantity::quantity;
-use crate::report::Decision;
+use crate::report::{Decision, Lacking, Remains, Remark};
 use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
@@ -43,13 +42,13 @@ pub struct Found {
     /// The candidates beside the last model, to first order.
     pub last_screening: Vec<Promise>,
     /// What stands for no effect, but does what effects would do.
-    pub rival: Option<String>,
+    pub rival: Option<Remains>,
     /// Whether the last model leaves no more than the sensors make.
     pub complete: bool,
-    /// Where what is left lies, in words, the largest first.
-    pub places: Vec<String>,
+    /// Where what is left lies, the largest first.
+    pub places: Vec<Remains>,
     /// What a user should know besides.
-    pub notes: Vec<String>,
+    pub remarks: Vec<Remark>,
     /// Every comparison.
     pub decisions: Vec<Decision>,
     /// Terms that were not tried because time ran out.
@@ -100,10 +99,8 @@ impl Found {
                 .min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
             let Some((idle, _)) = idle else { break };
             let term = self.added.remove(idle);
-            self.notes.push(format!(
-                "A search on parts of the recording found {} besides; on all of it that gains too little.",
-                family.terms()[term].name
-            ));
+            let effect = family.terms()[term].name.clone();
+            self.remarks.push(Remark::FoundInPartOnly { effect });
             let mut rungs = std::mem::take(&mut self.rungs);
             let above = rungs.split_off(idle + 1);
             rungs.pop();
@@ -158,21 +155,17 @@ impl Found {
         if !still && !faulty && no_cause.is_none() {
             return;
         }
-        let force = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
-        let force = force.map_or_else(String::new, |((before, _), (left, _))| {
-            let told = |force| quantity(force, &family.quantity().unit);
-            format!(", the force that is lacking from {} to {}", told(before), told(left))
+        let lacking = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
+        let unit = family.quantity().unit;
+        let lacking = lacking.map(|((base, _), (last, _))| Lacking { base, last, unit });
+        let names = self.added.iter().map(|term| family.terms()[*term].name.clone());
+        self.remarks.push(Remark::NotTheCause {
+            effects: names.collect(),
+            base: self.base.scale / ahead.budget(),
+            last: top.scale / ahead.budget(),
+            lacking,
+            because: no_cause,
         });
-        let names: Vec<&str> =
-            self.added.iter().map(|term| family.terms()[*term].name.as_str()).collect();
-        self.notes.push(format!(
-            "nearest: {} would take the prediction error from {:.2} to {:.2} times what the sensors make{force}: \
-             that is not the cause{}",
-            names.join(" + "),
-            self.base.scale / ahead.budget(),
-            top.scale / ahead.budget(),
-            no_cause.map_or_else(String::new, |why| format!(" ({why})")),
-        ));
         self.places = local::places(ahead, &self.base, thresholds.local, &family.quantity().unit);
         self.places.splice(0..0, ahead.remains(&self.base.model, thresholds.complete));
         self.complete = false;

@@ -4,7 +4,7 @@
 use super::Ahead;
 use super::node::Node;
 use crate::family::Series;
-use crate::measurement::quantity::quantity;
+use crate::report::{Fault, Remains};
 
 /// Bins of equal count along time and each coordinate.
 const BINS: usize = 40;
@@ -15,41 +15,31 @@ const ALONE: f64 = 8.0;
 /// Share of the squared error in so few samples from which they are told as faults of the sampling.
 const FAULTS: (f64, f64) = (0.5, 0.01);
 
-/// Places where a model errs more than `factor` times what the sensors make, the worst first, in words; before them the
+/// Places where a model errs more than `factor` times what the sensors make, the worst first; before them the
 /// force that it lacks (in `unit`), where that is as much larger than its band.
-pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<String> {
+pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<Remains> {
     let budget = ahead.budget();
     let time = ahead.instants().iter().map(|(time, _)| *time).collect();
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
-    let mut worst: Vec<(f64, String)> = Vec::new();
+    let mut worst: Vec<(f64, Remains)> = Vec::new();
     let lacks = node.missing_force(ahead).and_then(Series::size);
     if let Some((rms, band)) = lacks.filter(|(rms, band)| *rms > factor * band) {
-        let (rms, band) = (quantity(rms, unit), quantity(band, unit));
-        let text = format!("It lacks {rms} (rms) beyond doubt: that is known to ±{band}.");
-        worst.push((f64::INFINITY, text));
+        let lacks = Remains::MissingForce { rms, band, unit: unit.to_owned() };
+        worst.push((f64::INFINITY, lacks));
     }
-    worst.extend(ahead.faults().map(|text| (f64::INFINITY, text)));
-    if let Some(share) = faults(&node.errors) {
-        let text = format!(
-            "{:.0} % of the squared error is in isolated samples: look for faults of the sampling (dropped or late \
-             samples, wrong time stamps).",
-            100.0 * share
-        );
-        worst.push((f64::INFINITY, text));
-    }
+    let isolated = faults(&node.errors).map(|share| Fault::Isolated { share });
+    let faults = ahead.faults().into_iter().chain(isolated);
+    worst.extend(faults.map(|fault| (f64::INFINITY, Remains::Faulty { fault })));
     for (name, unit, values) in &along {
         let found = largest(values, &node.errors).map(|(rms, at)| (rms / budget, at));
         if let Some((ratio, at)) = found.filter(|(ratio, _)| *ratio > factor) {
-            let near = quantity(at, unit);
-            let text = format!(
-                "Near {name} {near} it errs {ratio:.1} times as much as the sensors make it."
-            );
-            worst.push((ratio, text));
+            let (coordinate, unit) = (name.clone(), unit.clone());
+            worst.push((ratio, Remains::ErrorNear { coordinate, at, unit, times: ratio }));
         }
     }
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
-    worst.into_iter().map(|(_, text)| text).collect()
+    worst.into_iter().map(|(_, remains)| remains).collect()
 }
 
 /// The largest rms of the errors of a bin along `values`, and where it is.
@@ -102,7 +92,7 @@ mod tests {
     fn a_force_that_is_twice_its_band_is_told_and_a_smaller_one_is_not() {
         let mut plant = Plant::new(1, &[]);
         let node = fit::evaluated(&plant, Plant::model(&[]), 0);
-        assert_eq!(places(&plant, &node, 2.0, "V"), [""; 0]);
+        assert_eq!(places(&plant, &node, 2.0, "V"), []);
         for (force, told) in [(1.9, false), (2.1, true)] {
             plant.lacks = Some(Series {
                 time: vec![0.0, 0.1, 0.2],
@@ -114,7 +104,11 @@ mod tests {
             let node = fit::evaluated(&plant, Plant::model(&[]), 0);
             let places = places(&plant, &node, 2.0, "V");
             assert_eq!(places.len(), usize::from(told), "{places:?}");
-            assert!(places.iter().all(|text| text.contains("2.10 V (rms)")), "{places:?}");
+            let size = |remains: &Remains| match remains {
+                Remains::MissingForce { rms, unit, .. } => (rms - 2.1).abs() < 1e-9 && unit == "V",
+                _ => false,
+            };
+            assert!(places.iter().all(size), "{places:?}");
         }
     }
 }

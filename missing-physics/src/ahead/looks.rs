@@ -14,16 +14,8 @@ use super::residuals::Residuals;
 use super::{Ahead, reading};
 use crate::family::{Fitted, ModelFamily};
 use crate::fit;
-use crate::report::{Decision, Discovery};
+use crate::report::{Decision, Discovery, Remark};
 use crate::task::{Event, Observer, Settings, Thresholds};
-
-/// What is told where time ran out in the second look.
-const CUT: &str =
-    "Time ran out before it was known whether other effects, which hide each other, do as much.";
-
-/// What is told where time ran out before the other reading was asked.
-const UNREAD: &str = "Time ran out before it was known whether fewer effects do where the force acts otherwise between \
-                      samples (held or changing evenly).";
 
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 ///
@@ -192,7 +184,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         let mut found = here.search.finish(here.climb);
         if stop() && !found.added.is_empty() {
             found.stopped = true;
-            found.notes.push(UNREAD.to_owned());
+            found.remarks.push(Remark::OtherReadingUnasked);
             return (here.reading, found);
         }
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
@@ -241,7 +233,7 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
     /// The same where time ran out before the second look was over.
     fn cut(mut self) -> Self {
         self.found.stopped = true;
-        self.found.notes.push(CUT.to_owned());
+        self.found.remarks.push(Remark::SecondLookCut);
         self
     }
 }
@@ -305,7 +297,7 @@ impl<'a> Run<'a> {
         let Sought { reading, found } = sought;
         let (family, ahead) = (reading.family, &*reading.whole);
         let mut discovery = Report { family, ahead, settings: self.settings, found }.discovery();
-        discovery.notes.extend(family.reading());
+        discovery.remarks.extend(family.reading());
         discovery.seed = self.settings.seed;
         discovery.wall_s = self.started.elapsed().as_secs_f64();
         discovery

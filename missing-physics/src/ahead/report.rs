@@ -1,7 +1,6 @@
 //! A search as a [`Discovery`]: ladder, ranking, verdict.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 use aep_core::Scale;
 
@@ -15,14 +14,11 @@ use crate::family::{Fitted, ModelFamily, detection_limit, sizes};
 use crate::fit::{self, Fit, uncertainty};
 use crate::report::{
     Ambiguity, Budget, Candidate, Decision, DetectionLimit, Discovery, MissingForce, NamedValue,
-    RegimeShare, Rung, SplitMetrics, Verdict, floor_key,
+    Reason, RegimeShare, Rung, SplitMetrics, Verdict, floor_key,
 };
 use crate::statistics::split::Split;
 use crate::statistics::weights;
 use crate::task::Settings;
-
-/// Largest p-value of a dependence on a coordinate that is told as structure.
-const STRUCTURE: f64 = 0.005;
 
 /// What is told of a search.
 pub struct Report<'a, F: ModelFamily + ?Sized> {
@@ -64,13 +60,11 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let last = self.lacks(self.found.rungs.last().unwrap_or(&self.found.base), last_fit);
         let base =
             if added.is_empty() { last.clone() } else { self.lacks(&self.found.base, &base_fit) };
-        let summary = self.summary(verdict, &budget, &added, &ladder, &ambiguous, &where_last);
         let generic_term = (verdict == Verdict::Unexplained)
             .then(|| self.generic_term(&where_last, &last_fit.residual))
             .flatten();
         let mut discovery = Discovery {
             verdict,
-            summary,
             added,
             ladder,
             ranking: self.ranking(),
@@ -91,7 +85,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             untried: self.names(&self.found.untried),
             seed: 0,
             wall_s: 0.0,
-            notes: self.found.notes.clone(),
+            remains: self.found.places.clone(),
+            most_likely: None,
+            remarks: self.found.remarks.clone(),
+            notes: Vec::new(),
             stopped: self.found.stopped,
             diagnosis: None,
             diagnosis_base: None,
@@ -115,7 +112,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
 
     /// A term that describes what is left along the coordinate that it depends on most, as text to add.
     fn generic_term(&self, places: &[crate::report::Where], residual: &[f64]) -> Option<String> {
-        let place = places.iter().find(|place| place.p_value <= STRUCTURE)?;
+        let place = places.iter().find(|place| place.is_structure())?;
         let named = |c: &&crate::family::Coordinate| c.name == place.coordinate;
         let coordinate = self.family.coordinates().iter().find(named)?;
         self.family.generic_term(coordinate, &generic::shape(coordinate, residual))
@@ -132,6 +129,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             expected: self.ahead.budget(),
             base: of(&self.found.base),
             last: of(last),
+            allowed: self.settings.thresholds.complete,
             complete: self.found.complete,
         }
     }
@@ -267,80 +265,6 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         }
         limits
     }
-
-    fn summary(
-        &self,
-        verdict: Verdict,
-        budget: &Budget,
-        added: &[String],
-        ladder: &[Rung],
-        ambiguous: &[Ambiguity],
-        places: &[crate::report::Where],
-    ) -> String {
-        let name = self.family.quantity().name;
-        let key = diagnosis::relative_key(self.family);
-        let relative = |rung: Option<&Rung>| {
-            rung.and_then(|rung| rung.error.get(&key)).map_or(0.0, |e| 100.0 * e.validation)
-        };
-        let (first, last) = (relative(ladder.first()), relative(ladder.last()));
-        let mut text = match verdict {
-            Verdict::NothingMissing => format!(
-                "Nothing is missing: one sample ahead the base model errs {:.2} times as much as the sensors make \
-                 it, and no effect of the library lowers that by more than chance.",
-                budget.base
-            ),
-            Verdict::Unexplained if budget.last <= self.settings.thresholds.complete => format!(
-                "One sample ahead the model errs {:.2} times as much as the sensors make it, but something is left that no \
-                 effect of the library explains.",
-                budget.last
-            ),
-            Verdict::Unexplained => format!(
-                "One sample ahead the model errs {:.1} times as much as the sensors make it, and no effect of the \
-                 library explains that.",
-                budget.last
-            ),
-            Verdict::Stopped => {
-                "Stopped: the search was cut before anything could be said.".to_owned()
-            }
-            Verdict::EffectsFound | Verdict::Ambiguous => format!(
-                "{}: {}. With it the prediction error falls from {:.2} to {:.2} times what the sensors make, \
-                 that of the {name} from {first:.2} % to {last:.2} %.",
-                if self.found.stopped { "Found so far" } else { "Missing" },
-                added.join(", "),
-                budget.base,
-                budget.last
-            ),
-        };
-        if !budget.complete && verdict != Verdict::Stopped {
-            if !added.is_empty() {
-                // How much is left has been said.
-                text.push_str(" The model is still incomplete.");
-            }
-            for place in self.found.places.iter().take(1) {
-                let _ = write!(text, " {place}");
-            }
-            let likely = places.iter().find(|place| place.p_value <= STRUCTURE);
-            if let Some(place) = likely.filter(|_| self.found.places.is_empty()) {
-                let _ =
-                    write!(text, " It depends most on {}: {}.", place.coordinate, place.in_words());
-            }
-        }
-        for choice in ambiguous {
-            let _ = write!(
-                text,
-                " This data cannot tell {} apart: {}",
-                choice.effects.join(" from "),
-                choice.experiment
-            );
-        }
-        if self.found.stopped {
-            let untried = self.names(&self.found.untried);
-            if !untried.is_empty() {
-                let _ = write!(text, " Not tried: {}.", untried.join(", "));
-            }
-        }
-        text
-    }
 }
 
 /// Share of the squared error that a gain in log-likelihood of so many errors stands for; what makes it more than
@@ -361,7 +285,7 @@ fn finite(decision: &Decision) -> Decision {
         difference: or_zero(decision.difference),
         standard_error: or_zero(decision.standard_error),
         budget: or_zero(decision.budget),
-        reason: "its prediction errors are not finite".to_owned(),
+        because: Some(Reason::NotFinite),
         ..decision.clone()
     }
 }
@@ -381,11 +305,11 @@ mod tests {
             standard_error: 1.0,
             budget: f64::INFINITY,
             outcome: Outcome::TooLittle,
-            reason: String::new(),
+            because: None,
         };
         let told = finite(&decision);
         assert_eq!((told.difference, told.standard_error, told.budget), (0.0, 1.0, 0.0));
-        assert!(told.reason.contains("not finite"));
+        assert_eq!(told.because, Some(Reason::NotFinite));
         assert_eq!(share(f64::NAN, 10.0), -1.0);
         assert_eq!(share(-1e9, 10.0), -1.0);
         assert_eq!(share(f64::INFINITY, 10.0), 1.0);

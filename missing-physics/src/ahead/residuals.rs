@@ -17,8 +17,7 @@ use crate::ahead::autoregression::Autoregression;
 use crate::diagnosis::where_it_fails::{self, Look};
 use crate::family::{Fitted, ModelFamily};
 use crate::fit;
-use crate::measurement::quantity::quantity;
-use crate::report::{Where, floor_key};
+use crate::report::{NoCause, Remains, Where, floor_key};
 use crate::statistics::autocorrelation::pieces;
 use crate::statistics::basis::weighed;
 use crate::statistics::weights;
@@ -32,7 +31,7 @@ const IN_FULL: f64 = 16_000.0;
 /// that may be as little noise as the prediction is.
 const SMOOTH: f64 = 0.5;
 /// Largest p-value and smallest share of the square of a dependence on a coordinate that keeps a model incomplete.
-const STRUCTURE: (f64, f64) = (0.005, 0.08);
+const STRUCTURE: (f64, f64) = (Where::STRUCTURE, 0.08);
 /// Share of what is more than noise that effects may leave and still be its cause.
 const MOST: f64 = 0.5;
 /// Settings where residuals count as they are, one on each ladder.
@@ -169,43 +168,28 @@ impl<F: ModelFamily + ?Sized> Ahead for Residuals<'_, F> {
         if self.family.shapes(term).len() > 1 { STARTS } else { 1 }
     }
 
-    fn remains(&self, model: &Fitted, complete: f64) -> Option<String> {
+    fn remains(&self, model: &Fitted, complete: f64) -> Option<Remains> {
         let residual = self.residual(model);
         let unit = self.family.quantity().unit;
         let (rms, noise) = (statistics::rms(&residual, f64::INFINITY), self.whitening.budget);
         if self.coarse {
-            return Some(
-                "From one sample to the next the model's own output changes as much as what it leaves: this is too \
-                 coarse to tell noise from something that is missing, unless the noise is stated."
-                    .to_owned(),
-            );
+            return Some(Remains::TooCoarse);
         }
         if let Some(place) = self.structure(&residual) {
-            let (share, words) = (100.0 * place.share, place.in_words());
-            return Some(format!(
-                "What it leaves still depends on {} ({share:.0} % of it; {words}).",
-                place.coordinate
-            ));
+            return Some(Remains::Structure { place });
         }
-        (rms > complete * noise).then(|| {
-            format!(
-                "What it leaves, {}, changes more slowly than noise of {}: something is missing that no effect describes, \
-                 or the noise has a colour that was not stated.",
-                quantity(rms, &unit),
-                quantity(noise, &unit)
-            )
-        })
+        (rms > complete * noise).then_some(Remains::Slow { rms, noise, unit })
     }
 
-    fn is_no_cause(&self, base: &Fitted, last: &Fitted) -> Option<String> {
+    fn is_no_cause(&self, base: &Fitted, last: &Fitted) -> Option<NoCause> {
         let [before, after] = [base, last].map(|model| self.residual(model));
         let [rms, left] = [&before, &after].map(|r| statistics::rms(r, f64::INFINITY).powi(2));
         let plain = self.uneven(&before, where_it_fails::times);
         if let Some(plain) = plain.filter(|plain| (1.0 - plain.share) * rms < left) {
-            return Some(format!("{} does more", plain.in_words()));
+            return Some(NoCause::PlainDoesMore { place: plain });
         }
         let beyond = |square: f64| (square - self.whitening.budget.powi(2)).max(0.0);
         let still = self.structure(&after).filter(|_| beyond(left) > MOST * beyond(rms));
-        still.map(|place| format!("most of what depends on {} is left", place.coordinate))
+        still.map(|place| NoCause::MostIsLeft { coordinate: place.coordinate })
     }
 }

@@ -8,6 +8,8 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+use crate::report::Refusal;
+
 use super::{Ahead, Rival, Trial, trials};
 use crate::family::{
     Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Series, Term as About,
@@ -243,10 +245,11 @@ impl Ahead for Plant {
         Some(model.without(self, WAVE).with(BENT, &[size, 0.0]))
     }
     fn rivals(&self) -> Vec<Rival> {
-        vec![Rival { term: RIVAL, words: "a wave less a beat", kin: vec![PUSH] }]
+        vec![Rival { term: RIVAL, title: "a wave less a beat", kin: vec![PUSH] }]
     }
-    fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
-        self.none.filter(|term| model.terms.contains(term)).map(|term| (term, "it is none".into()))
+    fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
+        let refusal = Refusal::AtLimit { parameter: "it is none".into() };
+        self.none.filter(|term| model.terms.contains(term)).map(|term| (term, refusal))
     }
     fn missing_force(&self, _: &Fitted, _: usize) -> Option<Series> {
         self.lacks.clone()

@@ -59,7 +59,6 @@ pub fn comparison<F: ModelFamily + ?Sized>(
     noise_floor.insert(floor_key(&quantity.name, &quantity.unit), floor);
     let mut discovery = Discovery {
         verdict: Verdict::NothingMissing,
-        summary: String::new(),
         added: rungs.iter().flat_map(|rung| rung.added.clone()).collect(),
         ladder: rungs,
         ranking: Vec::new(),
@@ -79,6 +78,9 @@ pub fn comparison<F: ModelFamily + ?Sized>(
         stopped: false,
         seed,
         wall_s: 0.0,
+        remains: Vec::new(),
+        most_likely: None,
+        remarks: Vec::new(),
         notes: Vec::new(),
         diagnosis: None,
         diagnosis_base: None,

@@ -11,8 +11,7 @@ use std::ops::Range;
 
 use crate::diagnosis::where_it_fails::parity;
 use crate::family::{Coordinate, Fitted, FullRate, ModelFamily};
-use crate::measurement::quantity::{number, quantity};
-use crate::report::{Curve, Line, Plot};
+use crate::report::{Curve, Line, LineOf, Plot, Relation};
 use crate::statistics::autocorrelation::{interval, pieces};
 
 use crate::statistics::periodogram::{Peak, Periodogram};
@@ -64,7 +63,7 @@ pub fn lines(full: &FullRate, quantity: &str, unit: &str) -> (Vec<Line>, Vec<Plo
         lines.extend(kept.take(MOST).map(|line| (k, line)));
     }
     for k in 0..lines.len() {
-        lines[k].1.note = note(full, &spectra, &lines, k);
+        lines[k].1.relation = relation(full, &spectra, &lines, k);
     }
     (lines.into_iter().map(|(_, line)| line).collect(), plots)
 }
@@ -100,18 +99,13 @@ impl<'a> Spectrum<'a> {
     fn lines(&self) -> impl Iterator<Item = Line> {
         let named = move |peak: Peak| {
             let period = 1.0 / peak.frequency;
-            let name = match self.coordinate {
-                None => format!("{} Hz", number(peak.frequency)),
-                Some(coordinate) => format!("period {}", quantity(period, &coordinate.unit)),
-            };
             Line {
                 along: self.name().to_owned(),
-                name,
                 period,
                 unit: self.unit().to_owned(),
                 amplitude: peak.amplitude,
                 p_value: peak.p_value,
-                note: String::new(),
+                relation: None,
             }
         };
         self.periodogram.peaks(FALSE_ALARMS).map(named)
@@ -248,31 +242,35 @@ fn passes(full: &FullRate, x: &[f64]) -> Vec<Range<usize>> {
 
 /// What the `k`-th line has to do with the others. Along a coordinate harmonics come first: one line of
 /// it makes several over time, which then are multiples of each other by chance of the speeds.
-fn note(full: &FullRate, spectra: &[Spectrum<'_>], lines: &[(usize, Line)], k: usize) -> String {
+fn relation(
+    full: &FullRate,
+    spectra: &[Spectrum<'_>],
+    lines: &[(usize, Line)],
+    k: usize,
+) -> Option<Relation> {
     let harmonic = || harmonic(lines, k);
     let seen_at = || seen_at(full, spectra, lines, k);
-    let note = if spectra[lines[k].0].coordinate.is_some() {
+    if spectra[lines[k].0].coordinate.is_some() {
         twin(spectra, lines, k).or_else(harmonic).or_else(seen_at)
     } else {
         seen_at().or_else(harmonic)
-    };
-    note.unwrap_or_default()
+    }
 }
 
 /// The same period, stronger along another coordinate: with or against the motion.
-fn twin(spectra: &[Spectrum<'_>], lines: &[(usize, Line)], k: usize) -> Option<String> {
+fn twin(spectra: &[Spectrum<'_>], lines: &[(usize, Line)], k: usize) -> Option<Relation> {
     let (of, line) = &lines[k];
     lines.iter().find_map(|(other, stronger)| {
         let alike = other != of
             && spectra[*other].coordinate.is_some()
             && stronger.amplitude > line.amplitude
             && (stronger.period / line.period - 1.0).abs() < SAME;
-        alike.then(|| format!("stronger along {}", stronger.along))
+        alike.then(|| Relation::StrongerAlong { coordinate: stronger.along.clone() })
     })
 }
 
 /// The longest period in the same spectrum that this one is a whole part of.
-fn harmonic(lines: &[(usize, Line)], k: usize) -> Option<String> {
+fn harmonic(lines: &[(usize, Line)], k: usize) -> Option<Relation> {
     let (of, line) = &lines[k];
     let whole = |base: &Line| {
         let ratio = base.period / line.period;
@@ -284,7 +282,7 @@ fn harmonic(lines: &[(usize, Line)], k: usize) -> Option<String> {
         .filter(|(other, _)| other == of)
         .filter_map(|(_, base)| Some((base, whole(base)?)))
         .max_by(|a, b| a.0.period.total_cmp(&b.0.period))
-        .map(|(base, whole)| format!("1/{whole} of {}", base.name))
+        .map(|(base, whole)| Relation::Harmonic { order: whole as u32, of: line_of(base) })
 }
 
 /// The line along a coordinate that shows up as this one over time, or the other way round.
@@ -293,7 +291,7 @@ fn seen_at(
     spectra: &[Spectrum<'_>],
     lines: &[(usize, Line)],
     k: usize,
-) -> Option<String> {
+) -> Option<Relation> {
     let (of, line) = &lines[k];
     let is_in_time = spectra[*of].coordinate.is_none();
     lines.iter().find_map(|(other, cause)| {
@@ -309,9 +307,13 @@ fn seen_at(
         }
         let explained = (over_time(full, in_time), over_space(full, coordinate, in_space));
         let is_effect = (explained.0 < explained.1) == is_in_time;
-        let rate = quantity(speed, &format!("{}/s", coordinate.unit));
-        is_effect.then(|| format!("{} seen at {rate}", cause.name))
+        let unit = format!("{}/s", coordinate.unit);
+        is_effect.then(|| Relation::SeenAt { of: line_of(cause), rate: speed, unit })
     })
+}
+
+fn line_of(line: &Line) -> LineOf {
+    LineOf { along: line.along.clone(), period: line.period, unit: line.unit.clone() }
 }
 
 /// Share of the used time at which the coordinate changes at this rate.

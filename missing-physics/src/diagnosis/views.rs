@@ -1,13 +1,13 @@
 //! Several views of one error side by side, and what to make of them where they disagree.
 
-use crate::report::View;
+use crate::report::{Disagreement, View};
 
 /// Views that differ by less than this factor do not prefer one model to another.
 const CLEARLY: f64 = 1.05;
 
 /// Where two views prefer different models: for each pair of models and each view that contradicts
-/// the first view that decides, a sentence. `models` are names with their views.
-pub fn disagreements(models: &[(String, Vec<View>)]) -> Vec<String> {
+/// the first view that decides. `models` are names with their views.
+pub fn disagreements(models: &[(String, Vec<View>)]) -> Vec<Disagreement> {
     let mut said = Vec::new();
     for (k, (name, views)) in models.iter().enumerate() {
         for (other, others) in &models[k + 1..] {
@@ -17,7 +17,7 @@ pub fn disagreements(models: &[(String, Vec<View>)]) -> Vec<String> {
     said
 }
 
-fn between(a: (&str, &[View]), b: (&str, &[View])) -> Vec<String> {
+fn between(a: (&str, &[View]), b: (&str, &[View])) -> Vec<Disagreement> {
     let pairs: Vec<(&View, &View)> =
         a.1.iter()
             .filter_map(|view| Some((view, b.1.iter().find(|other| other.name == view.name)?)))
@@ -33,19 +33,12 @@ fn between(a: (&str, &[View]), b: (&str, &[View])) -> Vec<String> {
     pairs
         .iter()
         .filter(|pair| preferred(pair).is_some_and(|first| first != better))
-        .map(|(view, _)| {
-            let advice = if view.decides {
-                "both views count: one of the models gains in its view by something that is not there"
-            } else {
-                "it is not to be judged by"
-            };
-            format!(
-                "the {} prefers '{}', the {} prefers '{}': {advice}",
-                judge.name,
-                name(better),
-                view.name,
-                name(!better),
-            )
+        .map(|(view, _)| Disagreement {
+            judge: judge.name.clone(),
+            prefers: name(better).to_owned(),
+            view: view.name.clone(),
+            instead: name(!better).to_owned(),
+            decides: view.decides,
         })
         .collect()
 }
@@ -84,11 +77,14 @@ mod tests {
     fn views_that_prefer_different_models_are_named_with_the_one_to_trust() {
         let a = ("a".to_owned(), vec![view("force", 1.0, true), view("free run", 2.0, false)]);
         let b = ("b".to_owned(), vec![view("force", 1.5, true), view("free run", 1.0, false)]);
-        let said = disagreements(&[a, b]);
-        assert_eq!(
-            said,
-            ["the force prefers 'a', the free run prefers 'b': it is not to be judged by"]
-        );
+        let between = Disagreement {
+            judge: "force".into(),
+            prefers: "a".into(),
+            view: "free run".into(),
+            instead: "b".into(),
+            decides: false,
+        };
+        assert_eq!(disagreements(&[a, b]), [between]);
     }
 
     #[test]

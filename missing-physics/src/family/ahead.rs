@@ -3,6 +3,7 @@
 use super::fitted::Fitted;
 use super::own::Own;
 use super::series::Series;
+use crate::report::{Fault, NoCause, Refusal, Remains};
 
 /// A recording seen one sample ahead.
 pub trait Ahead: Sync {
@@ -38,20 +39,20 @@ pub trait Ahead: Sync {
         1.0
     }
 
-    /// What a model leaves that its errors one sample ahead do not show, in words: with it no model is complete, which
-    /// may err `complete` times as much as the sensors make it.
-    fn remains(&self, _model: &Fitted, _complete: f64) -> Option<String> {
+    /// What a model leaves that its errors one sample ahead do not show: with it no model is complete, which may err
+    /// `complete` times as much as the sensors make it.
+    fn remains(&self, _model: &Fitted, _complete: f64) -> Option<Remains> {
         None
     }
 
-    /// Why effects that one model has beyond another are not the cause of what that one lacks, in words: something that is no
-    /// effect does more, or most of what was there is still there.
-    fn is_no_cause(&self, _base: &Fitted, _last: &Fitted) -> Option<String> {
+    /// Why effects that one model has beyond another are not the cause of what that one lacks: something that is no effect does
+    /// more, or most of what was there is still there.
+    fn is_no_cause(&self, _base: &Fitted, _last: &Fitted) -> Option<NoCause> {
         None
     }
 
-    /// What is wrong with the recording itself, in words: with it no model is complete.
-    fn faults(&self) -> Option<String> {
+    /// What is wrong with the recording itself: with it no model is complete.
+    fn faults(&self) -> Option<Fault> {
         None
     }
 
@@ -90,8 +91,8 @@ pub trait Ahead: Sync {
         Vec::new()
     }
 
-    /// A term of a model that is no such effect as it was fitted (a gap of no width), and why, in words.
-    fn vanishes(&self, _model: &Fitted) -> Option<(usize, String)> {
+    /// A term of a model that is no such effect as it was fitted (a gap of no width), and why.
+    fn vanishes(&self, _model: &Fitted) -> Option<(usize, Refusal)> {
         None
     }
 
@@ -145,8 +146,8 @@ pub trait Ahead: Sync {
 pub struct Rival {
     /// The term. Its values are amplitudes, 0 where there is nothing.
     pub term: usize,
-    /// What it is, in words.
-    pub words: &'static str,
+    /// What it is: `a friction level that varies freely with time`.
+    pub title: &'static str,
     /// The effects that are shapes of it.
     pub kin: Vec<usize>,
 }

@@ -12,8 +12,9 @@ use super::fitted::Fitted;
 use super::full_rate::FullRate;
 use super::generic::Generic;
 use super::shapes;
+use super::sizes::sizes;
 use super::term::Term;
-use crate::report::{NamedError, Plot};
+use crate::report::{Course, NamedError, Plot, Remark};
 use crate::statistics::split::Split;
 
 /// A recording seen through a kind of model: what the model should predict on a grid of instants,
@@ -125,8 +126,8 @@ pub trait ModelFamily: Sync {
         None
     }
 
-    /// How the recording was read where nobody stated it, in words.
-    fn reading(&self) -> Option<String> {
+    /// How the recording was read where nobody stated it.
+    fn reading(&self) -> Option<Remark> {
         None
     }
 
@@ -169,12 +170,9 @@ pub trait ModelFamily: Sync {
         Vec::new()
     }
 
-    /// The experiment that would tell these terms apart, in words.
-    fn experiment(&self, terms: &[String]) -> String {
-        format!(
-            "repeat the experiment with more varied motion to separate {}.",
-            terms.join(" and ")
-        )
+    /// The experiment that would tell these terms apart, a sentence of the subject; nothing where it knows none.
+    fn experiment(&self, _terms: &[String]) -> Option<String> {
+        None
     }
 
     /// A term, as text that a user can add to a model, that describes structure of this shape along a
@@ -217,15 +215,9 @@ pub trait ModelFamily: Sync {
         BTreeMap::new()
     }
 
-    /// The size of a term in words an engineer would use.
-    fn describe(&self, term: usize, values: &[f64]) -> String {
-        let words: Vec<String> = self.terms()[term]
-            .parameters
-            .iter()
-            .zip(values)
-            .map(|(parameter, value)| format!("{} {value:.4} {}", parameter.name, parameter.unit))
-            .collect();
-        words.join(", ")
+    /// What a term that varies freely was found to be.
+    fn course(&self, term: usize, values: &[f64]) -> Course {
+        Course::Values { values: sizes(&self.terms()[term], values) }
     }
 
     /// Curves for the report: measurement, prediction, what the term looks like.

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::refusal::Refusal;
+
 /// What came of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -24,6 +26,32 @@ pub enum Outcome {
     Rival,
 }
 
+/// Why a comparison came out as it did, or what was compared.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Reason {
+    /// The candidate is the best set of its size.
+    BestOfSize,
+    /// The candidate does without an effect, and as well.
+    AsGoodWithout,
+    /// Chance gains as much as the effect that goes.
+    Chance,
+    /// The candidate has an effect in its plain form.
+    PlainForm,
+    /// Something that stands for no effect was asked.
+    Rival {
+        /// What it is.
+        rival: String,
+    },
+    /// What was fitted is no such effect.
+    Refused {
+        /// Why.
+        refusal: Refusal,
+    },
+    /// Prediction errors that are no numbers.
+    NotFinite,
+}
+
 /// One comparison.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
@@ -42,7 +70,7 @@ pub struct Decision {
     pub budget: f64,
     /// What came of it.
     pub outcome: Outcome,
-    /// Why, in a few words.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub reason: String,
+    /// Why, where the numbers do not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub because: Option<Reason>,
 }

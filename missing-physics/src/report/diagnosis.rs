@@ -58,13 +58,49 @@ pub struct Independence {
     pub p_value: f64,
 }
 
+/// A line that another one is told by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LineOf {
+    /// `time`, or the coordinate along which it is periodic.
+    pub along: String,
+    /// Period, in `unit`.
+    pub period: f64,
+    /// SI unit of the period.
+    pub unit: String,
+}
+
+/// What a line has to do with another one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Relation {
+    /// The same period is stronger along another coordinate.
+    StrongerAlong {
+        /// The coordinate.
+        coordinate: String,
+    },
+    /// A harmonic.
+    Harmonic {
+        /// Whole number of periods in one of the fundamental.
+        order: u32,
+        /// The fundamental.
+        of: LineOf,
+    },
+    /// Another line, seen while the coordinate changes at one rate.
+    SeenAt {
+        /// The other line.
+        of: LineOf,
+        /// The rate, in `unit`.
+        rate: f64,
+        /// SI unit of the rate.
+        unit: String,
+    },
+}
+
 /// A line of a spectrum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// `time`, or the coordinate along which the residual is periodic.
     pub along: String,
-    /// Name: `50.0 Hz`, `period 2.50 mm`.
-    pub name: String,
     /// Period, in `unit`.
     pub period: f64,
     /// SI unit of the period.
@@ -73,6 +109,7 @@ pub struct Line {
     pub amplitude: f64,
     /// Chance of such a line anywhere in a spectrum without lines.
     pub p_value: f64,
-    /// What else is known of it: half the period of another line, another line seen at one speed.
-    pub note: String,
+    /// What it has to do with another line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relation: Option<Relation>,
 }

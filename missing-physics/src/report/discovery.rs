@@ -1,6 +1,7 @@
 //! What a discovery found, as data: the JSON contract that scripts rely on.
 //!
-//! Adding a field is fine, renaming one is not. Keys of the maps (`force_rms_N`, `window_rms_m`, ...)
+//! Adding a field is fine, renaming one is not. Everything is a number, a name or one of a few kinds; where the JSON has a
+//! sentence (`summary`, `notes`, `reason` of a decision) `aep-studio` makes it of these. Keys of the maps (`force_rms_N`, `window_rms_m`, ...)
 //! are named by the model family.
 
 use std::collections::BTreeMap;
@@ -14,6 +15,8 @@ use super::diagnosis::Diagnosis;
 use super::missing_force::MissingForce;
 use super::place::{RegimeShare, Where};
 use super::plot::Plot;
+use super::remains::Remains;
+use super::remark::Remark;
 use super::rung::Rung;
 use super::surrogates::Surrogates;
 use super::verdict::{Ambiguity, Budget, Verdict};
@@ -24,9 +27,6 @@ use super::view::View;
 pub struct Discovery {
     /// What the data say.
     pub verdict: Verdict,
-    /// The verdict in one or two sentences.
-    #[serde(default)]
-    pub summary: String,
     /// Effects in the order added.
     pub added: Vec<String>,
     /// From the base model up.
@@ -84,7 +84,16 @@ pub struct Discovery {
     pub seed: u64,
     /// Time taken, s.
     pub wall_s: f64,
-    /// Things the user should know: doubts about the data, limits of the verdict.
+    /// What keeps the last model incomplete beside its prediction error, the largest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remains: Vec<Remains>,
+    /// The effect that is most likely missing, where it was asked for and nothing was to be added.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub most_likely: Option<String>,
+    /// What the user should know: doubts about the data, limits of the verdict.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<Remark>,
+    /// What whoever asked has to say besides, in words of its own.
     #[serde(default)]
     pub notes: Vec<String>,
     /// What the residual of the last model says by itself.

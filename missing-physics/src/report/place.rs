@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::measurement::quantity::quantity;
-
 /// What a dependence of the error looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -54,32 +52,12 @@ pub struct Where {
 }
 
 impl Where {
-    /// What the dependence looks like, for a summary: `largest mean error +2.00 N near 3.00 mm`. Nothing takes it apart.
-    pub fn in_words(&self) -> String {
-        let (of_error, of_place) = (&self.error_unit, &self.unit);
-        match self.pattern {
-            None => String::new(),
-            Some(Pattern::Mean { .. }) => format!("largest mean error {}", self.largest()),
-            Some(Pattern::Step { height, time }) => {
-                format!("a step of {height:+.3} {of_error} at {time:.2} {of_place}")
-            }
-            Some(Pattern::Sine { amplitude, period }) => {
-                let (amplitude, period) =
-                    (quantity(amplitude, of_error), quantity(period, of_place));
-                format!("a swing of {amplitude} with a period of {period}")
-            }
-        }
-    }
+    /// Largest p-value of a dependence that is told as structure.
+    pub const STRUCTURE: f64 = 0.005;
 
-    /// The same without what it is, where a heading says that.
-    pub fn largest(&self) -> String {
-        let Some(Pattern::Mean { error, at, against_motion }) = self.pattern else {
-            return self.in_words();
-        };
-        let opposes = if against_motion { " against the motion" } else { "" };
-        let sign = if error > 0.0 { "+" } else { "" };
-        let (size, place) = (quantity(error, &self.error_unit), quantity(at, &self.unit));
-        format!("{sign}{size}{opposes} near {place}")
+    /// Whether the error depends on the coordinate beyond chance.
+    pub fn is_structure(&self) -> bool {
+        self.p_value <= Self::STRUCTURE
     }
 }
 

@@ -27,6 +27,9 @@ pub struct Budget {
     pub base: f64,
     /// Prediction error of the last model, in multiples of it.
     pub last: f64,
+    /// Up to this multiple a model is complete, where nothing is left at one place.
+    #[serde(default)]
+    pub allowed: f64,
     /// Whether the last model leaves no more than sensors make.
     pub complete: bool,
 }
@@ -36,6 +39,7 @@ pub struct Budget {
 pub struct Ambiguity {
     /// Names of the effects.
     pub effects: Vec<String>,
-    /// The experiment that would tell them apart.
-    pub experiment: String,
+    /// The experiment that would tell them apart, as the subject says it; nothing where it knows none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub experiment: Option<String>,
 }

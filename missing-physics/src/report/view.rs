@@ -23,3 +23,18 @@ pub struct View {
     /// What the user should know about these numbers.
     pub warnings: Vec<String>,
 }
+
+/// Two views that prefer different models.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Disagreement {
+    /// Name of the first view that decides.
+    pub judge: String,
+    /// The model that it prefers.
+    pub prefers: String,
+    /// Name of the other view.
+    pub view: String,
+    /// The model that that one prefers.
+    pub instead: String,
+    /// Whether models may be judged by the other view, too.
+    pub decides: bool,
+}

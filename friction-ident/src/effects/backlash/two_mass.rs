@@ -1,7 +1,7 @@
 //! Two masses and a gap between them: the impact at its ends is part of the law.
 
 use super::super::load::{Connection, Load, Pulled};
-use super::{About, AsFound, Effect, Parameter, Parameters, Slot, WIDTH, closed};
+use super::{About, AsFound, Effect, Parameter, Parameters, Refused, Slot, WIDTH, closed};
 use crate::axis::Quantity;
 use crate::effects::{Correction, Element, Onset, Response, Step};
 use crate::simd::{sign, vectorised};
@@ -48,13 +48,18 @@ impl Effect for TwoMass {
         Some(self)
     }
 
-    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         let (load, gap, stiffness) = (found.values[0], found.values[3], found.values[4]);
         closed(gap, found.least[3]).or_else(|| {
             // Either side of the middle has half of the gap.
             let gives = found.force * load / (load + found.mass) / stiffness;
-            (gives > 0.5 * gap)
-                .then(|| " has a contact that gives more than its gap is wide".to_owned())
+            (gives > 0.5 * gap).then_some(Refused {
+                name: "give of the contact",
+                value: gives,
+                limit: 0.5 * gap,
+                unit_of: "b",
+                meaning: "the contact gives more than its gap is wide",
+            })
         })
     }
 }

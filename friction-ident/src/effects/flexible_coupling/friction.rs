@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::super::load::{Connection, Load, Pulled};
 use super::{
     About, AsFound, Correction, Effect, Element, FREQUENCY, LOAD, Onset, Parameter, Parameters,
-    Response, Slot, Step, ZETA, silent,
+    Refused, Response, Slot, Step, ZETA, silent,
 };
 use crate::axis::Quantity;
 use crate::simd::{add_to, vectorised};
@@ -70,7 +70,7 @@ impl Effect for WithFriction {
         Some(self)
     }
 
-    fn refused(&self, found: &AsFound<'_>) -> Option<String> {
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         silent(found.values[2])
     }
 }

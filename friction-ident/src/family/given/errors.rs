@@ -5,6 +5,7 @@ use std::sync::Arc;
 use missing_physics::ahead::whitening::ORDERS;
 use missing_physics::ahead::{Ahead, Columns, Rival, Trial, trials};
 use missing_physics::family::Series;
+use missing_physics::report::Refusal;
 use missing_physics::{Fitted, ModelFamily};
 use rayon::prelude::*;
 
@@ -161,7 +162,7 @@ impl Ahead for View<'_> {
         rivals(self.family)
     }
 
-    fn vanishes(&self, model: &Fitted) -> Option<(usize, String)> {
+    fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
         self.family.vanishes(model)
     }
 

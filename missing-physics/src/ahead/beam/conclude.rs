@@ -6,7 +6,7 @@ use crate::ahead::found::Found;
 use crate::ahead::node::Node;
 use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
-use crate::report::Outcome;
+use crate::report::{Outcome, Reason, Remains};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The best set, of the smallest size that is needed.
@@ -36,9 +36,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let all = self.comparison.compare(base, &set).nats;
             let taken = gain.nats > self.thresholds.clear(if size == 1 { 0.0 } else { all });
             let outcome = if taken { Outcome::Added } else { Outcome::TooLittle };
-            let reason = format!("the best set of {size}");
             let from = best.clone();
-            self.note(size, &set, &from, gain, outcome, &reason);
+            self.note(size, &set, &from, gain, outcome, Some(Reason::BestOfSize));
             if !taken {
                 break;
             }
@@ -75,7 +74,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                     &from,
                     negative(cost),
                     Outcome::Dropped,
-                    "as good without",
+                    Some(Reason::AsGoodWithout),
                 );
                 best = without;
             }
@@ -106,7 +105,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         last: &Node,
         costs: Vec<(usize, Difference, Node)>,
         mut beside: Screened,
-        rival: Option<String>,
+        rival: Option<Remains>,
     ) -> Found {
         let base = climb.base.clone();
         // Forms may have changed since the costs were taken.
@@ -166,7 +165,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             rival,
             complete: false,
             places: Vec::new(),
-            notes: std::mem::take(&mut self.notes),
+            remarks: std::mem::take(&mut self.remarks),
             decisions,
             untried: self.untried.into_iter().collect(),
             stopped,

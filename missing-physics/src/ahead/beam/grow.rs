@@ -10,7 +10,7 @@ use crate::ahead::found::Ranked;
 use crate::ahead::node::Node;
 use crate::ahead::screen::{Promise, Screened, screen};
 use crate::family::{Fitted, ModelFamily};
-use crate::report::Outcome;
+use crate::report::{Outcome, Reason, Remark};
 use crate::task::Event;
 
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
@@ -49,17 +49,18 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
             for child in children {
                 let gain = self.comparison.compare(from, &child);
-                if let Some((_, reason)) = self.refused(&climb.base, &child) {
-                    self.note(size, &child, from, gain, Outcome::NotIdentifiable, &reason);
+                if let Some((_, refusal)) = self.refused(&climb.base, &child) {
+                    let because = Some(Reason::Refused { refusal: refusal.clone() });
+                    self.note(size, &child, from, gain, Outcome::NotIdentifiable, because);
                     if gain.nats > self.thresholds.better && size == 1 {
-                        let effects = self.names(&child).join(" + ");
-                        self.notes.push(format!("{effects} is not named: {reason}"));
+                        let effects = self.names(&child);
+                        self.remarks.push(Remark::NotNamed { effects, refusal });
                     }
                     continue;
                 }
                 let gains = gain.nats > self.thresholds.better;
                 let outcome = if gains { Outcome::AsGood } else { Outcome::TooLittle };
-                self.note(size, &child, from, gain, outcome, "");
+                self.note(size, &child, from, gain, outcome, None);
                 let effects = self.names(&child);
                 let nats = self.in_full(gain.nats);
                 (self.tell)(&Event::Compared { rung: size, effects: &effects, nats });

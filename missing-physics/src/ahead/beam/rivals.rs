@@ -9,15 +9,15 @@ use crate::ahead::compare::Difference;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
 use crate::family::{Fitted, ModelFamily, Rival};
-use crate::report::Outcome;
+use crate::report::{Outcome, Reason, Remains};
 
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
 const PROMISED: f64 = 0.5;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The model without effects that a rival makes up for, and what is to be said of it; nothing where all of them
+    /// The model without effects that a rival makes up for, and what it was found to be; nothing where all of them
     /// stand.
-    pub(super) fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<(Node, String)> {
+    pub(super) fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
         let rivals = self.ahead.rivals();
         rivals.iter().find_map(|rival| self.without_rivalled(climb, last, rival))
     }
@@ -27,7 +27,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         climb: &Climb,
         last: &Node,
         rival: &Rival,
-    ) -> Option<(Node, String)> {
+    ) -> Option<(Node, Remains)> {
         let base = &climb.base;
         let added = Self::added(base, last);
         let promised = screen(self.family, self.ahead, base, &[rival.term], false);
@@ -59,16 +59,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
         let gone = added.iter().filter(|t| !kept.contains(t));
-        let gone: Vec<&str> = gone.map(|t| self.family.terms()[*t].name.as_str()).collect();
+        let gone: Vec<String> = gone.map(|t| self.family.terms()[*t].name.clone()).collect();
         let nats = self.in_full(self.comparison.compare(last, &beside).nats);
-        let size = self.family.describe(rival.term, &self.values(&beside, rival));
-        let does = if gone.is_empty() {
-            format!("lowers the prediction error by {nats:.0} nats")
-        } else {
-            format!("does what {} would do ({nats:+.0} nats)", gone.join(" + "))
-        };
-        let words = capital(rival.words);
-        Some((result, format!("{words} {does}: {size}. Why, this recording does not show.")))
+        let course = self.family.course(rival.term, &self.values(&beside, rival));
+        let found =
+            Remains::Rival { rival: rival.title.to_owned(), instead_of: gone, nats, course };
+        Some((result, found))
     }
 
     /// Whether a model with the rival predicts as well as the last one, or better where it makes up for no more than one
@@ -78,7 +74,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let better = self.thresholds.better;
         let needed = if instead_of > 1 { -better } else { better };
         let outcome = if by.nats > needed { Outcome::Rival } else { Outcome::Worse };
-        self.note(instead_of, with, last, by, outcome, rival.words);
+        self.note(instead_of, with, last, by, outcome, because(rival));
         outcome == Outcome::Rival
     }
 
@@ -108,7 +104,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let idle = |least: &(usize, Difference, Node)| least.1.nats < self.thresholds.better;
             let Some((term, cost, without)) = least.filter(idle) else { return (kept, beside) };
             let from = beside.clone();
-            self.note(kept.len(), &without, &from, negative(cost), Outcome::Dropped, rival.words);
+            self.note(
+                kept.len(),
+                &without,
+                &from,
+                negative(cost),
+                Outcome::Dropped,
+                because(rival),
+            );
             kept.retain(|t| *t != term);
             beside = without;
         }
@@ -138,7 +141,6 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 }
 
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+fn because(rival: &Rival) -> Option<Reason> {
+    Some(Reason::Rival { rival: rival.title.to_owned() })
 }

@@ -8,7 +8,7 @@ use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
 use crate::ahead::screen::{Promise, screen};
 use crate::family::{Fitted, ModelFamily};
-use crate::report::Outcome;
+use crate::report::{Outcome, Reason};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// A candidate fitted from the best of its starts; nothing where time ran out.
@@ -107,7 +107,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 &from,
                 negative(loss),
                 outcome,
-                "the plain form",
+                Some(Reason::PlainForm),
             );
             if as_good {
                 best = plain;

@@ -83,6 +83,11 @@ fn a_burst_of_narrow_noise_in_a_tenth_of_the_time_is_no_line() {
     assert!(alarms <= 4, "{alarms} of 100");
 }
 
+/// Whether a line has this period, to three digits.
+fn is(line: &Line, along: &str, period: f64) -> bool {
+    line.along == along && (line.period / period - 1.0).abs() < 5e-3
+}
+
 #[test]
 fn a_hum_and_a_ripple_are_named_with_their_amplitudes() {
     let residual = noise(1)
@@ -96,14 +101,18 @@ fn a_hum_and_a_ripple_are_named_with_their_amplitudes() {
         .collect();
     let (lines, plots) = lines(&full(residual), "force", "N");
     assert_eq!(plots.len(), 2);
-    let hum = lines.iter().find(|line| line.name == "50.0 Hz").unwrap();
+    let hum = lines.iter().find(|line| is(line, "time", 0.02)).unwrap();
     assert!((hum.amplitude - 0.5).abs() < 0.1 && hum.p_value < 1e-4, "{hum:?}");
-    assert_eq!(hum.note, "");
-    let ripple = lines.iter().find(|line| line.name == "period 2.50 mm").unwrap();
-    assert!((ripple.amplitude - 0.8).abs() < 0.15 && ripple.note.is_empty(), "{ripple:?}");
+    assert_eq!(hum.relation, None);
+    let ripple = lines.iter().find(|line| is(line, "position", 2.5e-3)).unwrap();
+    assert!((ripple.amplitude - 0.8).abs() < 0.15 && ripple.relation.is_none(), "{ripple:?}");
     // At 0.1 and 0.05 m/s the ripple is seen at 40 and 20 Hz.
-    for line in lines.iter().filter(|line| line.along == "time" && line.name != "50.0 Hz") {
-        assert!(line.note.starts_with("period 2.50 mm seen at"), "{line:?}");
+    for line in lines.iter().filter(|line| line.along == "time" && !is(line, "time", 0.02)) {
+        let Some(Relation::SeenAt { of, rate, unit }) = &line.relation else {
+            panic!("{line:?}");
+        };
+        assert_eq!((of, unit.as_str()), (&line_of(ripple), "m/s"));
+        assert!([0.1, 0.05].iter().any(|speed| (rate / speed - 1.0).abs() < 0.02), "{line:?}");
     }
 }
 
@@ -115,8 +124,9 @@ fn a_second_harmonic_is_called_half_of_the_first() {
         .map(|(noise, x)| 0.2 * noise + (TAU * x / 5e-3).cos() + 0.6 * (2.0 * TAU * x / 5e-3).sin())
         .collect();
     let (lines, _) = lines(&full(residual), "force", "N");
-    let half = lines.iter().find(|line| line.name == "period 2.50 mm").unwrap();
-    assert_eq!(half.note, "1/2 of period 5.00 mm");
+    let at = |period: f64| lines.iter().find(|line| is(line, "position", period)).unwrap();
+    let whole = Relation::Harmonic { order: 2, of: line_of(at(5e-3)) };
+    assert_eq!(at(2.5e-3).relation, Some(whole));
 }
 
 #[test]

@@ -1,20 +1,4 @@
-//! Values and experiments in the words of an engineer.
-
-use missing_physics::Term;
-use missing_physics::measurement::quantity::quantity;
-
-/// A term with its values.
-pub fn describe(term: &Term, values: &[f64]) -> String {
-    let words: Vec<String> = term
-        .parameters
-        .iter()
-        .zip(values)
-        .map(|(parameter, value)| {
-            format!("{} = {}", parameter.name, quantity(*value, &parameter.unit))
-        })
-        .collect();
-    words.join(", ")
-}
+//! What tells effects apart that look alike in ordinary motion.
 
 /// Pairs (or more) of effects that look alike in ordinary motion, and what tells them apart.
 const APART: [(&[&str], &str); 10] = [

@@ -1,0 +1,53 @@
+//! A discovery as JSON: its numbers, and beside them the sentences that people read.
+
+use missing_physics::Discovery;
+use missing_physics::report::Diagnosis;
+use serde_json::{Value, json};
+
+use crate::words;
+
+/// The discovery by the published schema ([`missing_physics::report::SCHEMA`]): what
+/// [`Discovery`] holds, with `summary`, `notes`, the reason of a decision, name and note of a line and the experiment of
+/// an ambiguity in words. Curves of the page are left out.
+///
+/// # Errors
+/// A value that JSON cannot hold.
+pub fn json(discovery: &Discovery) -> serde_json::Result<Value> {
+    let bare = Discovery { plots: Vec::new(), ..discovery.clone() };
+    let mut json = serde_json::to_value(bare)?;
+    json["summary"] = json!(words::summary(discovery));
+    json["notes"] = json!(words::notes(discovery));
+    for (k, decision) in discovery.decisions.iter().enumerate() {
+        if let Some(reason) = words::reason(decision) {
+            json["decisions"][k]["reason"] = json!(reason);
+        }
+    }
+    for (k, choice) in discovery.ambiguous.iter().enumerate() {
+        json["ambiguous"][k]["experiment"] = json!(words::experiment(choice));
+    }
+    for (key, of) in
+        [("diagnosis", &discovery.diagnosis), ("diagnosis_base", &discovery.diagnosis_base)]
+    {
+        if let Some(of) = of {
+            lines(&mut json[key], of);
+        }
+    }
+    Ok(json)
+}
+
+/// What the residual of a model says, with the names of its lines.
+///
+/// # Errors
+/// As [`json`].
+pub fn diagnosis(diagnosis: &Diagnosis) -> serde_json::Result<Value> {
+    let mut json = serde_json::to_value(diagnosis)?;
+    lines(&mut json, diagnosis);
+    Ok(json)
+}
+
+fn lines(json: &mut Value, diagnosis: &Diagnosis) {
+    for (k, line) in diagnosis.lines.iter().enumerate() {
+        json["lines"][k]["name"] = json!(words::line(line));
+        json["lines"][k]["note"] = json!(words::relation(line));
+    }
+}

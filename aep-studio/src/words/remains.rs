@@ -1,0 +1,147 @@
+//! What keeps a model incomplete, in sentences.
+
+use missing_physics::measurement::quantity::quantity;
+use missing_physics::report::{Course, Fault, NoCause, Remains};
+
+use super::places::pattern;
+
+/// Something that a model leaves, as a sentence.
+pub fn remains(what: &Remains) -> String {
+    match what {
+        Remains::Rival { rival, instead_of, nats, course } => {
+            let does = if instead_of.is_empty() {
+                format!("lowers the prediction error by {nats:.0} nats")
+            } else {
+                format!("does what {} would do ({nats:+.0} nats)", instead_of.join(" + "))
+            };
+            let course = self::course(course);
+            format!("{} {does}: {course}. Why, this recording does not show.", capital(rival))
+        }
+        Remains::RivalsUnasked => {
+            "Whether something that varies freely with time does as much was not asked any more."
+                .to_owned()
+        }
+        Remains::MissingForce { rms, band, unit } => format!(
+            "It lacks {} (rms) beyond doubt: that is known to ±{}.",
+            quantity(*rms, unit),
+            quantity(*band, unit)
+        ),
+        Remains::Faulty { fault } => self::fault(fault),
+        Remains::ErrorNear { coordinate, at, unit, times } => format!(
+            "Near {coordinate} {} it errs {times:.1} times as much as the sensors make it.",
+            quantity(*at, unit)
+        ),
+        Remains::Structure { place } => format!(
+            "What it leaves still depends on {} ({:.0} % of it; {}).",
+            place.coordinate,
+            100.0 * place.share,
+            pattern(place)
+        ),
+        Remains::TooCoarse => {
+            "From one sample to the next the model's own output changes as much as what it leaves: this is too coarse to \
+             tell noise from something that is missing, unless the noise is stated."
+                .to_owned()
+        }
+        Remains::Slow { rms, noise, unit } => format!(
+            "What it leaves, {}, changes more slowly than noise of {}: something is missing that no effect describes, or \
+             the noise has a colour that was not stated.",
+            quantity(*rms, unit),
+            quantity(*noise, unit)
+        ),
+    }
+}
+
+fn fault(fault: &Fault) -> String {
+    match fault {
+        Fault::Repeated { share } => format!(
+            "{:.2} % of the samples repeat the position before them while the axis moves: they were dropped, or the \
+             recorder reads slower than it writes. They were left out.",
+            100.0 * share
+        ),
+        Fault::Isolated { share } => format!(
+            "{:.0} % of the squared error is in isolated samples: look for faults of the sampling (dropped or late \
+             samples, wrong time stamps).",
+            100.0 * share
+        ),
+    }
+}
+
+/// What something that varies freely was found to be.
+fn course(course: &Course) -> String {
+    match course {
+        Course::Step { change, at, unit, along_unit } => {
+            format!("it changes by {} at {}", quantity(*change, unit), quantity(*at, along_unit))
+        }
+        Course::Varies { range, from, to, unit, along_unit } => format!(
+            "it varies over a range of {}, most of all between {} and {}",
+            quantity(*range, unit),
+            quantity(*from, along_unit),
+            quantity(*to, along_unit)
+        ),
+        Course::Values { values } => super::size(values),
+    }
+}
+
+/// Why effects that fit are not the cause.
+pub fn no_cause(why: &NoCause) -> String {
+    match why {
+        NoCause::PlainDoesMore { place } => format!("{} does more", pattern(place)),
+        NoCause::MostIsLeft { coordinate } => {
+            format!("most of what depends on {coordinate} is left")
+        }
+    }
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use missing_physics::report::{Pattern, Where};
+
+    #[test]
+    fn a_rival_says_instead_of_what_it_stands_and_how_it_runs() {
+        let rival = |instead_of: &[&str], course| {
+            remains(&Remains::Rival {
+                rival: "a friction level that varies freely with time".into(),
+                instead_of: instead_of.iter().map(|name| (*name).to_owned()).collect(),
+                nats: 120.4,
+                course,
+            })
+        };
+        let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
+        let step = Course::Step { change: -1.7, at: 11.5, unit, along_unit };
+        assert_eq!(
+            rival(&["drift", "stribeck"], step),
+            "A friction level that varies freely with time does what drift + stribeck would do (+120 nats): it changes by \
+             -1.70 N at 11.5 s. Why, this recording does not show."
+        );
+        let (unit, along_unit) = ("N".to_owned(), "m".to_owned());
+        let varies = Course::Varies { range: 1.7, from: 0.1, to: 0.11, unit, along_unit };
+        assert!(rival(&[], varies).contains(
+            "time lowers the prediction error by 120 nats: it varies over a range of 1.70 N, most of all between 100 mm and \
+             110 mm."
+        ));
+    }
+
+    #[test]
+    fn structure_says_its_share_and_its_pattern() {
+        let place = Where {
+            coordinate: "level".into(),
+            share: 0.34,
+            p_value: 0.001,
+            unit: "m".into(),
+            error_unit: "V".into(),
+            pattern: Some(Pattern::Mean { error: 0.5, at: 0.02, against_motion: false }),
+        };
+        let more = no_cause(&NoCause::PlainDoesMore { place: place.clone() });
+        assert_eq!(more, "largest mean error +0.500 V near 20.0 mm does more");
+        assert_eq!(
+            remains(&Remains::Structure { place }),
+            "What it leaves still depends on level (34 % of it; largest mean error +0.500 V near 20.0 mm)."
+        );
+    }
+}

@@ -1,0 +1,120 @@
+//! What a user should know beside a verdict, in sentences.
+
+use missing_physics::Hold;
+use missing_physics::measurement::quantity::quantity;
+use missing_physics::report::{Disagreement, Lacking, Remark};
+
+use super::refusals::refusal;
+use super::remains::no_cause;
+
+/// A remark as a sentence.
+pub fn remark(remark: &Remark) -> String {
+    match remark {
+        Remark::NotNamed { effects, refusal: why } => {
+            format!("{} is not named: {}", effects.join(" + "), refusal(why))
+        }
+        Remark::FoundInPartOnly { effect } => format!(
+            "A search on parts of the recording found {effect} besides; on all of it that gains too little."
+        ),
+        Remark::NotTheCause { effects, base, last, lacking, because } => format!(
+            "nearest: {} would take the prediction error from {base:.2} to {last:.2} times what the sensors make{}: that \
+             is not the cause{}",
+            effects.join(" + "),
+            lacking.as_ref().map_or_else(String::new, force),
+            because.as_ref().map_or_else(String::new, |why| format!(" ({})", no_cause(why))),
+        ),
+        Remark::SecondLookCut => {
+            "Time ran out before it was known whether other effects, which hide each other, do as much."
+                .to_owned()
+        }
+        Remark::OtherReadingUnasked => {
+            "Time ran out before it was known whether fewer effects do where the force acts otherwise between samples \
+             (held or changing evenly)."
+                .to_owned()
+        }
+        Remark::Read { input, hold, nats, by_search } => {
+            let how = match hold {
+                Hold::ZeroOrder => "held from one sample to the next",
+                Hold::Sampled => "sampled, changing evenly between samples",
+            };
+            let why = if *by_search {
+                "the simplest model hardly tells, the best model with one effect predicts better so"
+                    .to_owned()
+            } else {
+                format!("that predicts better by {nats:.0} nats")
+            };
+            format!("The {input} is taken as {how}: {why}.")
+        }
+        Remark::Given { input, most_shift } => format!(
+            "The {input} that your model gives is taken over time, nothing of ours beside it. What its samples and \
+             filters make is fitted and no effect: a shift of up to {most_shift} samples (timing.shift) and a smoothing \
+             (timing.smoothing). Rests and reversals are left out, where a {input} made of velocities says nothing."
+        ),
+    }
+}
+
+fn force(lacking: &Lacking) -> String {
+    let told = |force| quantity(force, &lacking.unit);
+    format!(", the force that is lacking from {} to {}", told(lacking.base), told(lacking.last))
+}
+
+/// Where two views prefer different models.
+pub fn disagreement(between: &Disagreement) -> String {
+    let Disagreement { judge, prefers, view, instead, decides } = between;
+    let advice = if *decides {
+        "both views count: one of the models gains in its view by something that is not there"
+    } else {
+        "it is not to be judged by"
+    };
+    format!("the {judge} prefers '{prefers}', the {view} prefers '{instead}': {advice}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use missing_physics::report::NoCause;
+
+    #[test]
+    fn what_is_not_the_cause_says_what_it_would_do_and_why_it_is_none() {
+        let told = remark(&Remark::NotTheCause {
+            effects: vec!["ripple".into(), "drift".into()],
+            base: 3.0,
+            last: 2.5,
+            lacking: Some(Lacking { base: 4.0, last: 3.5, unit: "N".into() }),
+            because: Some(NoCause::MostIsLeft { coordinate: "position".into() }),
+        });
+        assert_eq!(
+            told,
+            "nearest: ripple + drift would take the prediction error from 3.00 to 2.50 times what the sensors make, the \
+             force that is lacking from 4.00 N to 3.50 N: that is not the cause (most of what depends on position is left)"
+        );
+    }
+
+    #[test]
+    fn a_reading_says_how_and_why() {
+        let read = |hold, by_search| {
+            remark(&Remark::Read { input: "force".into(), hold, nats: 312.4, by_search })
+        };
+        assert_eq!(
+            read(Hold::ZeroOrder, false),
+            "The force is taken as held from one sample to the next: that predicts better by 312 nats."
+        );
+        assert!(read(Hold::Sampled, true).contains("hardly tells"));
+    }
+
+    #[test]
+    fn views_that_prefer_different_models_are_named_with_the_one_to_trust() {
+        let between = Disagreement {
+            judge: "force".into(),
+            prefers: "a".into(),
+            view: "free run".into(),
+            instead: "b".into(),
+            decides: false,
+        };
+        let said = "the force prefers 'a', the free run prefers 'b': it is not to be judged by";
+        assert_eq!(disagreement(&between), said);
+        assert!(
+            disagreement(&Disagreement { decides: true, ..between }).contains("both views count")
+        );
+    }
+}

@@ -1,0 +1,99 @@
+//! What keeps a model incomplete, and why effects that fit are not the cause.
+
+use serde::{Deserialize, Serialize};
+
+use super::course::Course;
+use super::place::Where;
+
+/// What is wrong with the recording itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Fault {
+    /// Samples repeat the one before them although something moves: they were dropped, or the recorder reads slower than
+    /// it writes. They are left out.
+    Repeated {
+        /// Share of all samples, 0..1.
+        share: f64,
+    },
+    /// Most of the squared error is in a few samples that stand alone.
+    Isolated {
+        /// Share of the squared error, 0..1.
+        share: f64,
+    },
+}
+
+/// Something that a model leaves: with it no model is complete, however small its errors are on the whole.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Remains {
+    /// What stands for no effect does what effects would do.
+    Rival {
+        /// What it is: `a friction level that varies freely with time`.
+        rival: String,
+        /// The effects that are not named for it; none where nothing else was found.
+        instead_of: Vec<String>,
+        /// What it gains over the last model, nats.
+        nats: f64,
+        /// What it was found to be.
+        course: Course,
+    },
+    /// Time ran out before anything that stands for no effect was asked.
+    RivalsUnasked,
+    /// It lacks a force beyond doubt.
+    MissingForce {
+        /// Root mean square of it.
+        rms: f64,
+        /// Root mean square of the half-widths of its 95 % bands.
+        band: f64,
+        /// SI unit of both.
+        unit: String,
+    },
+    /// The recording has a fault.
+    Faulty {
+        /// Which.
+        fault: Fault,
+    },
+    /// It errs more at one place.
+    ErrorNear {
+        /// Time or a coordinate.
+        coordinate: String,
+        /// The place, in `unit`.
+        at: f64,
+        /// SI unit of the coordinate.
+        unit: String,
+        /// Error there in multiples of what the sensors make.
+        times: f64,
+    },
+    /// What it leaves depends on a coordinate.
+    Structure {
+        /// On which, and how.
+        place: Where,
+    },
+    /// Its own output is as quick as what it leaves: noise that nobody stated is not known.
+    TooCoarse,
+    /// What it leaves changes more slowly than noise does.
+    Slow {
+        /// Root mean square of what it leaves.
+        rms: f64,
+        /// Root mean square of the noise.
+        noise: f64,
+        /// SI unit of both.
+        unit: String,
+    },
+}
+
+/// Why effects that a model has are not the cause of what the base model lacks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum NoCause {
+    /// Something over time that is no effect does more.
+    PlainDoesMore {
+        /// What.
+        place: Where,
+    },
+    /// Most of what depended on a coordinate still does.
+    MostIsLeft {
+        /// The coordinate.
+        coordinate: String,
+    },
+}

@@ -1,0 +1,73 @@
+//! What a user should know beside a verdict.
+
+use serde::{Deserialize, Serialize};
+
+use super::refusal::Refusal;
+use super::remains::NoCause;
+use crate::measurement::Hold;
+
+/// A force that is lacking with and without effects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lacking {
+    /// Root mean square without them.
+    pub base: f64,
+    /// With them.
+    pub last: f64,
+    /// SI unit of both.
+    pub unit: String,
+}
+
+/// A doubt about the data, a limit of the verdict.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Remark {
+    /// Effects gain enough and are not named.
+    NotNamed {
+        /// The effects.
+        effects: Vec<String>,
+        /// Why.
+        refusal: Refusal,
+    },
+    /// A search on parts of the recording found an effect that gains too little on all of it.
+    FoundInPartOnly {
+        /// The effect.
+        effect: String,
+    },
+    /// Effects come nearest and are not the cause.
+    NotTheCause {
+        /// The effects.
+        effects: Vec<String>,
+        /// Prediction error of the base model in multiples of what the sensors make.
+        base: f64,
+        /// With the effects.
+        last: f64,
+        /// The force that is lacking, where that is why.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        lacking: Option<Lacking>,
+        /// What else speaks against them.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        because: Option<NoCause>,
+    },
+    /// Time ran out before it was known whether other effects, which hide each other, do as much.
+    SecondLookCut,
+    /// Time ran out before it was known whether fewer effects do in the other reading of the input.
+    OtherReadingUnasked,
+    /// How the input was read between samples, where nobody said it.
+    Read {
+        /// The input.
+        input: String,
+        /// How it acts between samples.
+        hold: Hold,
+        /// Log-likelihood of the simplest model over that in the other reading, nats.
+        nats: f64,
+        /// Whether that is too little, so that the search decided.
+        by_search: bool,
+    },
+    /// Another model gives the input.
+    Given {
+        /// The input.
+        input: String,
+        /// Shift in time that its samples and filters may make, samples.
+        most_shift: f64,
+    },
+}
