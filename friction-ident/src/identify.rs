@@ -16,7 +16,7 @@ use missing_physics::{Recording, RecordingError};
 use rayon::prelude::*;
 
 use crate::closed_loop::Pd;
-use crate::effects::{Role, Scale};
+use crate::effects::{Effect, Role, Scale};
 use crate::model::{MASS, Model, ModelError};
 use crate::simulator::SimulationError;
 use crate::windows::{WindowError, WindowOptions};
@@ -29,7 +29,7 @@ mod windowed;
 
 pub use aep_core::Refined;
 pub use intervals::{Interval, intervals, intervals_over};
-pub use several::Searched;
+pub use several::{FoundParameter, Searched};
 
 use free_run::FreeRun;
 use windowed::Windowed;
@@ -93,6 +93,28 @@ pub fn all_free(model: &Model) -> Vec<Free> {
         (parameter.role != Role::Fixed).then_some(Free { address, low, high, scale })
     };
     model.addresses().into_iter().filter_map(tabled).collect()
+}
+
+/// Where a search of a model of `effects` begins: at the values of `known` where that has them, at typical ones for what
+/// it lacks. Effects whose law reads columns get those of `recording`.
+///
+/// # Errors
+/// Effects that do not fit together.
+pub fn first_guess(
+    known: &Model,
+    effects: &[&'static dyn Effect],
+    recording: &Recording,
+) -> Result<Model, ModelError> {
+    let mut model = Model::new(known.axis(), known.mass())?;
+    for effect in effects {
+        model = model.with_effect(effect.bound(recording).unwrap_or(*effect))?;
+        for address in model.addresses() {
+            if let Ok(value) = known.get(&address) {
+                model.set(&address, value)?;
+            }
+        }
+    }
+    Ok(model)
 }
 
 /// Why an identification is not possible.

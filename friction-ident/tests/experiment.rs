@@ -75,7 +75,7 @@ fn the_proposed_motion_tells_apart_what_the_recording_cannot() {
         let (below, rivals) = (names(["coulomb", "viscous"]), names([truth, rival]));
         let next = family.experiment_between(&below, &rivals, 1).unwrap();
         assert!(next.gain > 2.0, "{truth}: {next:?}");
-        assert!(next.tried.iter().all(|(_, deviations)| deviations.is_finite()));
+        assert!(next.tried.iter().all(|tried| tried.deviations.is_finite()));
 
         let second = record(&plant, &next.reference, 2);
         let both = FrictionFamily::new(&joined(&first, &second), &Options::default()).unwrap();

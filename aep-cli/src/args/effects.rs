@@ -5,8 +5,8 @@ use std::sync::{PoisonError, RwLock};
 
 use friction_ident::Library;
 use friction_ident::effects::beside::MODEL_FORCE;
-use friction_ident::effects::formula;
 use friction_ident::effects::regressor::{REFERENCE, regressor, regressors};
+use friction_ident::effects::{ALL, formula};
 use missing_physics::Recording;
 
 use super::shell::flag;
@@ -85,8 +85,8 @@ impl std::str::FromStr for EffectNames {
 /// Effects of a base model that nobody named: none beside a force that the user's own model gives.
 pub fn base_of(recording: &Recording) -> EffectNames {
     let own = recording.channel(MODEL_FORCE).is_some();
-    let names: &[&str] = if own { &[] } else { &["coulomb", "viscous", "offset"] };
-    EffectNames(names.iter().map(|name| (*name).to_owned()).collect())
+    let usual = ALL.iter().filter(|effect| effect.is_usual() && !own);
+    EffectNames(usual.map(|effect| effect.about().name.to_owned()).collect())
 }
 
 impl EffectNames {

@@ -77,7 +77,9 @@ fn in_time(
     drop(progress);
     let mut files = String::new();
     if let Some(path) = &args.results.json {
-        output::save_json(path, &found.json())?;
+        let json = serde_json::to_value(&found.found)
+            .map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;
+        output::save_json(path, &json)?;
         files += &written("results", path);
     }
     if let Some(path) = &args.output {

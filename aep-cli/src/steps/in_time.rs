@@ -1,14 +1,15 @@
 //! Identification by simulation.
 
 use aep_core::{Aep, Budget, MetaEp, Method};
+use friction_ident::effects::Effect;
 use friction_ident::family::FrictionFamily;
-use friction_ident::identify::{Interval, Searched, all_free};
-use friction_ident::{Free, Identification, Model, Quantity};
+use friction_ident::identify::{self, FoundParameter, Searched, all_free};
+use friction_ident::{Identification, Model, Quantity};
 use missing_physics::measurement::quantity::{number, quantity};
 use missing_physics::statistics::autocorrelation::interval;
 use missing_physics::{ModelFamily, Recording, diagnosis};
 
-use super::{identify, method, model};
+use super::{method, model};
 use crate::args::{TimeTask, library};
 use crate::failure::Failure;
 use crate::output::{Align, Table, dim};
@@ -34,7 +35,7 @@ pub fn identify_in_time(
     }
     let method = sized(algorithm, task.population)?;
     let budget = Budget::generations(task.generations);
-    Ok(Simulated { found: problem.from_several_starts(&*method, &budget, seed)?, free })
+    Ok(Simulated { found: problem.from_several_starts(&*method, &budget, seed)? })
 }
 
 /// Values from the comparison of forces; typical ones for effects that it cannot show.
@@ -49,19 +50,11 @@ fn first_guess(
         .filter(|name| family.terms().iter().any(|term| &term.name == *name))
         .cloned()
         .collect();
-    let (fit, _) = identify(family, &shown, (&Aep::practical(), seed), watch)?;
+    let (fit, _) = super::identify(family, &shown, (&Aep::practical(), seed), watch)?;
     let values = model(family, &diagnosis::rung(family, &fit, &[]))?;
-    let mut model = Model::new(family.axis(), values.mass())?;
-    for name in effects {
-        let effect = library().find(name)?;
-        model = model.with_effect(effect.bound(recording).unwrap_or(effect))?;
-        for address in model.addresses() {
-            if let Ok(value) = values.get(&address) {
-                model.set(&address, value)?;
-            }
-        }
-    }
-    Ok(model)
+    let effects: Vec<&dyn Effect> =
+        effects.iter().map(|name| library().find(name)).collect::<Result<_, _>>()?;
+    Ok(identify::first_guess(&values, &effects, recording)?)
 }
 
 /// The optimizer of this name with a population.
@@ -77,20 +70,9 @@ fn sized(name: &str, population: usize) -> Result<Box<dyn Method<f64>>, Failure>
 pub struct Simulated {
     /// Model, intervals and error.
     pub found: Searched,
-    free: Vec<Free>,
 }
 
 impl Simulated {
-    fn rows(&self) -> Vec<(&str, f64, &str, Option<&Interval>)> {
-        let rows = self.free.iter().zip(&self.found.position).enumerate();
-        rows.map(|(k, (free, value))| {
-            let unit = self.found.model.unit(&free.address).unwrap_or_default();
-            let interval = self.found.intervals.as_ref().and_then(|intervals| intervals.get(k));
-            (free.address.as_str(), *value, unit, interval)
-        })
-        .collect()
-    }
-
     /// The parameters as a table, and the error.
     pub fn text(&self) -> String {
         let mut table = Table::new(&[
@@ -99,26 +81,23 @@ impl Simulated {
             ("unit", Align::Left),
             ("95 % interval", Align::Left),
         ]);
-        for (address, value, unit, interval) in self.rows() {
+        for FoundParameter { free, value, unit, interval } in self.found.parameters() {
             let interval = match interval {
                 None => "stopped before it was known".to_owned(),
                 Some(i) if i.identifiable => format!("{} .. {}", number(i.low), number(i.high)),
                 Some(i) => {
                     let (low, high) = (number(i.low), number(i.high));
-                    let free = self.free.iter().find(|free| free.address == address);
-                    let fits = match free {
-                        Some(free) if i.low <= free.low && i.high < free.high => {
-                            format!("all below {high} fit")
-                        }
-                        Some(free) if i.low > free.low && i.high >= free.high => {
-                            format!("all above {low} fit")
-                        }
-                        _ => format!("{low} .. {high} fit"),
+                    let fits = if i.low <= free.low && i.high < free.high {
+                        format!("all below {high} fit")
+                    } else if i.low > free.low && i.high >= free.high {
+                        format!("all above {low} fit")
+                    } else {
+                        format!("{low} .. {high} fit")
                     };
                     format!("not identifiable from this data ({fits} as well)")
                 }
             };
-            table.row([address.to_owned(), number(value), unit.to_owned(), interval]);
+            table.row([free.address.clone(), number(value), unit.to_owned(), interval]);
         }
         let unit = self.found.model.axis().unit(Quantity::Length);
         let end = format!(
@@ -127,22 +106,5 @@ impl Simulated {
             quantity(self.found.rms, unit)
         );
         format!("{}\n {}\n", table.text(), dim(&end))
-    }
-
-    /// The same for scripts.
-    pub fn json(&self) -> serde_json::Value {
-        let parameters: serde_json::Map<String, serde_json::Value> = self
-            .rows()
-            .into_iter()
-            .map(|(address, value, unit, interval)| {
-                let (low, high) = (interval.map(|i| i.low), interval.map(|i| i.high));
-                let identifiable = interval.map(|i| i.identifiable);
-                let entry = serde_json::json!({
-                    "value": value, "low": low, "high": high, "unit": unit, "identifiable": identifiable
-                });
-                (address.to_owned(), entry)
-            })
-            .collect();
-        serde_json::json!({ "parameters": parameters, "position_rms": self.found.rms, "searches": self.found.searches })
     }
 }

@@ -5,17 +5,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{ChallengeError, Hide, Level, STROKE};
 use crate::axis::Axis;
-use crate::effects::{ALL, Effect, Role, find};
+use crate::effects::{ALL, Effect, Extent, Role, find};
 use crate::model::{Model, ModelError, address};
-
-/// Effects that every axis has.
-const BASE: [&str; 3] = ["coulomb", "viscous", "offset"];
-
-/// Effects that change another one: the table has that as well, and `random` does not choose them.
-const COMPANIONS: [(&str, &str); 1] = [("frictional-memory", "stribeck")];
-
-/// Screw leads on the market, m.
-const LEADS: [f64; 4] = [2.5e-3, 4e-3, 5e-3, 10e-3];
 
 pub(super) struct Draw {
     random: Xoshiro256PlusPlus,
@@ -38,19 +29,17 @@ impl Draw {
         match hide {
             Hide::Nothing => Ok(None),
             Hide::Random => {
-                let alone = |name: &str| COMPANIONS.iter().all(|(effect, _)| *effect != name);
-                let able: Vec<_> = ALL
-                    .iter()
-                    .filter(|effect| can_hide(**effect) && alone(effect.about().name))
-                    .collect();
+                // What changes another effect is hidden with that one, where it is asked for.
+                let alone = |effect: &&&dyn Effect| effect.companion().is_none();
+                let able: Vec<_> =
+                    ALL.iter().filter(|effect| can_hide(**effect)).filter(alone).collect();
                 Ok(Some(*able[self.random.random_range(0..able.len())]))
-            }
-            Hide::Effect(name) if BASE.contains(&name.as_str()) => {
-                Err(ChallengeError::Base(name.clone()))
             }
             Hide::Effect(name) => {
                 let effect = find(name)?;
-                if can_hide(effect) {
+                if effect.is_usual() {
+                    Err(ChallengeError::Base(name.clone()))
+                } else if can_hide(effect) {
                     Ok(Some(effect))
                 } else {
                     Err(ChallengeError::NotHere(name.clone()))
@@ -61,9 +50,9 @@ impl Draw {
 
     /// `base` with what `effect` acts on, if that is an effect of its own.
     pub fn companion(&mut self, base: Model, effect: &dyn Effect) -> Result<Model, ModelError> {
-        match COMPANIONS.iter().find(|(name, _)| *name == effect.about().name) {
+        match effect.companion() {
             None => Ok(base),
-            Some((_, companion)) => self.full(&base, find(companion)?),
+            Some(companion) => self.full(&base, find(companion)?),
         }
     }
 
@@ -79,13 +68,15 @@ impl Draw {
         for parameter in effect.about().parameters {
             let size = self.log_uniform(0.5, 2.0);
             let sign = if parameter.low < 0.0 && self.random.random() { -1.0 } else { 1.0 };
-            let value = match (parameter.role, parameter.name) {
+            let value = match (parameter.role, parameter.extent) {
                 (Role::Amplitude, _) => sign * self.amplitude(effect, parameter.name),
-                (Role::Shape, "l") => LEADS[self.random.random_range(0..LEADS.len())],
-                (Role::Shape, "x_0") => self.random.random_range(0.0..STROKE),
-                (Role::Shape, _) => size * parameter.default,
-                (Role::Fixed, "start") => 0.0,
-                (Role::Fixed, "end") => STROKE,
+                (Role::Shape, Some(Extent::StrokeMiddle)) => self.random.random_range(0.0..STROKE),
+                (Role::Shape, _) => match effect.drawn_from(parameter.name) {
+                    Some(sold) => sold[self.random.random_range(0..sold.len())],
+                    None => size * parameter.default,
+                },
+                (Role::Fixed, Some(Extent::StrokeBegin)) => 0.0,
+                (Role::Fixed, Some(Extent::StrokeEnd)) => STROKE,
                 (Role::Fixed, _) => parameter.default,
             };
             model.set(&address(effect, parameter.name), value)?;
@@ -107,5 +98,5 @@ impl Draw {
 }
 
 fn can_hide(effect: &dyn Effect) -> bool {
-    !BASE.contains(&effect.about().name) && effect.suits(Axis::Linear) && effect.shows_in_force()
+    !effect.is_usual() && effect.suits(Axis::Linear) && effect.shows_in_force()
 }

@@ -245,13 +245,7 @@ impl Place {
 fn obstacle(effect: &dyn Effect) -> Option<&'static str> {
     let about = effect.about();
     let known = [memory::DELAYED, memory::LAGGED, memory::BOND];
-    match about.name {
-        "load-friction" | "load-friction:both" => return Some("it needs the force of the drive"),
-        "load-friction:inertia" => return Some("it needs the acceleration"),
-        "drift" => return Some("its time is that of the recording"),
-        _ => {}
-    }
-    about.slots.iter().find_map(|slot| match slot {
+    let of_slot = |slot: &Slot| match slot {
         Slot::SmoothForce | Slot::FrictionLevel => None,
         Slot::Memory if known.contains(&about.name) => None,
         Slot::Memory => Some("a memory that the compensator does not know"),
@@ -259,7 +253,8 @@ fn obstacle(effect: &dyn Effect) -> Option<&'static str> {
         Slot::Drive => Some("it acts on the command as a whole"),
         Slot::Attached => Some("another body"),
         Slot::Sensor => Some("it acts on the sensor"),
-    })
+    };
+    effect.not_compensated().or_else(|| about.slots.iter().find_map(of_slot))
 }
 
 fn check(what: &'static str, value: f64) -> Result<(), CompensatorError> {

@@ -1,5 +1,7 @@
 //! What is known of an effect besides its code: name, equation, parameters, fingerprint, source.
 
+use serde::Deserialize;
+
 use crate::axis::{Axis, Quantity};
 
 /// How a parameter enters the force.
@@ -22,6 +24,24 @@ pub enum Scale {
     Log,
 }
 
+/// What of a recording a parameter is taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Extent {
+    /// Lowest position.
+    StrokeBegin,
+    /// Highest position.
+    StrokeEnd,
+    /// Position half way between them.
+    StrokeMiddle,
+    /// Time of the first sample.
+    RecordingBegin,
+    /// Time of the last sample.
+    RecordingEnd,
+    /// Highest speed.
+    TopSpeed,
+}
+
 /// One parameter of an effect. Bounds and default are those of a small ball-screw table; see
 /// [`Parameter::range`] for another axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +62,8 @@ pub struct Parameter {
     pub scale: Scale,
     /// Typical value.
     pub default: f64,
+    /// What of a recording it is, where a comparison takes it from there.
+    pub extent: Option<Extent>,
 }
 
 impl Parameter {
@@ -54,7 +76,7 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (Role::Amplitude, Scale::Linear);
-        Self { name, meaning, quantity, role, low: -high, high, scale, default }
+        Self { name, meaning, quantity, role, low: -high, high, scale, default, extent: None }
     }
 
     /// An amplitude that physics keeps at or above 0.
@@ -66,7 +88,7 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (Role::Amplitude, Scale::Linear);
-        Self { name, meaning, quantity, role, low: 0.0, high, scale, default }
+        Self { name, meaning, quantity, role, low: 0.0, high, scale, default, extent: None }
     }
 
     /// A positive shape parameter, searched on a logarithmic scale.
@@ -78,7 +100,7 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (Role::Shape, Scale::Log);
-        Self { name, meaning, quantity, role, low, high, scale, default }
+        Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
     }
 
     /// A parameter that is not fitted.
@@ -90,7 +112,14 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (Role::Fixed, Scale::Linear);
-        Self { name, meaning, quantity, role, low, high, scale, default }
+        Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
+    }
+
+    /// The same, taken from a recording where it is compared with one.
+    #[must_use]
+    pub const fn taken_from(mut self, extent: Extent) -> Self {
+        self.extent = Some(extent);
+        self
     }
 
     /// The same, searched on a linear scale.

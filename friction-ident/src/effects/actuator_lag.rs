@@ -1,6 +1,6 @@
 //! The current loop: the force follows its command like a first-order lag.
 
-use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
+use super::{About, Advance, Apart, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::signal::derivative;
 
@@ -56,6 +56,18 @@ impl Effect for ActuatorLag {
         &ABOUT
     }
 
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("actuator-lag:second-order")
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        &[Apart {
+            from: &["input-delay"],
+            experiment: "add a fast sine sweep (to a third of the sampling frequency): a delay turns the phase in \
+                         proportion to frequency, a lag also lowers the gain",
+        }]
+    }
+
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &FORMS
     }
@@ -68,6 +80,16 @@ impl Effect for ActuatorLag {
 impl Effect for SecondOrder {
     fn about(&self) -> &'static About {
         &SECOND_ORDER_ABOUT
+    }
+
+    /// Alone it would fit anything a little.
+    fn is_only_flexible(&self) -> bool {
+        true
+    }
+
+    /// It is a delay with what other people's filters make.
+    fn shows_beside_given_force(&self) -> bool {
+        false
     }
 
     fn drive(&self) -> Option<&dyn Drive> {

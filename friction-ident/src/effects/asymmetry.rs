@@ -1,6 +1,6 @@
 //! Friction that differs between the two directions of motion.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::{sign, vectorised};
 
@@ -39,6 +39,14 @@ static ABOUT: About = About {
 impl Effect for Asymmetry {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            smooth: "force += {dF_v} * fabs(v);",
+            level: "level += {dF_C} * s;",
+            ..CLaw::NONE
+        })
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {

@@ -55,6 +55,7 @@ static GAIN: About = About {
         high: 9.0,
         scale: Scale::Linear,
         default: 0.02,
+        extent: None,
     }],
     slots: &[Slot::SmoothForce],
     shows: "a residual proportional to the given force",
@@ -75,6 +76,7 @@ static FORCE: About = About {
             high: 10.0,
             scale: Scale::Linear,
             default: 1.0,
+            extent: None,
         },
         Parameter::fixed(
             "smoothing",

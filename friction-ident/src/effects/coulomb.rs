@@ -1,6 +1,6 @@
 //! Coulomb friction: a level that does not depend on speed, with true stick at rest.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::add_to;
 
@@ -21,6 +21,19 @@ static ABOUT: About = About {
 impl Effect for Coulomb {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// Whatever slides has it.
+    fn is_usual(&self) -> bool {
+        true
+    }
+
+    fn may_be_overrated(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { level: "level += {F_C};", ..CLaw::NONE })
     }
 
     fn friction_level(&self, p: Parameters<'_>, _m: &Motion<'_>, level: &mut [f64]) {

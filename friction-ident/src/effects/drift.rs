@@ -38,6 +38,14 @@ impl Effect for Drift {
         &ABOUT
     }
 
+    fn is_course_of_time(&self) -> bool {
+        true
+    }
+
+    fn not_compensated(&self) -> Option<&'static str> {
+        Some("its time is that of the recording")
+    }
+
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
         for (i, level) in level.iter_mut().enumerate() {
             *level += p.get(0)[i] * left(p, m, i);

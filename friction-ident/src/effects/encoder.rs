@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::own::{Own, turned};
-use super::{About, Effect, Parameter, Parameters, Periodic, Repeats, Sensor, Shown, Slot};
+use super::{About, Apart, Effect, Parameter, Parameters, Periodic, Repeats, Sensor, Shown, Slot};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -59,6 +59,19 @@ pub fn feigned(
 impl Effect for Encoder {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// What the sensor shows is in that force already.
+    fn shows_beside_given_force(&self) -> bool {
+        false
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        &[Apart {
+            from: &["ripple"],
+            experiment: "cover the same stroke at constant speeds a factor of three apart: a ripple keeps its force, what an \
+                         error of the encoder feigns grows with the square of the speed",
+        }]
     }
 
     fn sensor(&self) -> Option<&dyn Sensor> {

@@ -20,7 +20,8 @@ use missing_physics::Recording;
 use serde::Deserialize;
 
 use super::{
-    About, Effect, Motion, Parameter, Parameters, Role, Scale, Signal, Slot, Smooth, UnknownEffect,
+    About, Effect, Extent, Motion, Parameter, Parameters, Role, Scale, Signal, Slot, Smooth,
+    UnknownEffect,
 };
 use crate::axis::Quantity;
 
@@ -96,6 +97,8 @@ struct FileParameter {
     linear: bool,
     #[serde(default)]
     meaning: String,
+    /// What of a recording it is; it is not fitted then.
+    from: Option<Extent>,
 }
 
 /// What formulas of the user name as their source.
@@ -217,6 +220,10 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
     if !(within && p.low.is_finite() && p.high.is_finite()) {
         return Err(wrong("low < high, and default between them, all finite".into()));
     }
+    if p.linear && p.from.is_some() {
+        let what = "it is either taken from the recording or linear: leave out linear or from";
+        return Err(wrong(what.into()));
+    }
     let quantity = quantity(&p.unit).ok_or_else(|| {
         wrong(format!("unknown unit '{}'; one of: {}", p.unit, UNITS.map(|(u, _)| u).join(", ")))
     })?;
@@ -224,11 +231,16 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
         name: keep(name),
         meaning: keep(&p.meaning),
         quantity,
-        role: if p.linear { Role::Amplitude } else { Role::Shape },
+        role: match p.from {
+            Some(_) => Role::Fixed,
+            None if p.linear => Role::Amplitude,
+            None => Role::Shape,
+        },
         low: p.low,
         high: p.high,
         scale: if p.linear || p.low <= 0.0 { Scale::Linear } else { Scale::Log },
         default: p.default,
+        extent: p.from,
     })
 }
 

@@ -3,7 +3,7 @@
 //! A friction level or a force that may be anything at every moment or place explains nothing. Where it predicts as
 //! well as effects do that were found, the recording does not show those effects: see [`missing_physics::family::Rival`].
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use missing_physics::report::Course;
 
@@ -34,8 +34,8 @@ pub struct Free {
     pub effect: &'static dyn Effect,
     /// What it is.
     pub title: &'static str,
-    /// Effects that are one shape of it.
-    pub kin: &'static [&'static str],
+    /// Whether an effect is one shape of it.
+    pub is_kin: fn(&dyn Effect) -> bool,
 }
 
 /// All of them, in the order in which they are asked.
@@ -43,18 +43,22 @@ pub static RIVALS: [Free; 4] = [
     Free {
         effect: &FrictionOverTime,
         title: "a friction level that varies freely with time",
-        kin: &["drift"],
+        is_kin: |effect| effect.is_course_of_time(),
     },
     Free {
         effect: &FrictionStep,
         title: "a friction level that changes at one moment",
-        kin: &["drift"],
+        is_kin: |effect| effect.is_course_of_time(),
     },
-    Free { effect: &ForceOverTime, title: "a force that varies freely with time", kin: &[] },
+    Free {
+        effect: &ForceOverTime,
+        title: "a force that varies freely with time",
+        is_kin: |_| false,
+    },
     Free {
         effect: &ForceOverPosition,
         title: "a force that varies freely along the stroke",
-        kin: &["spring", "gravity-pendulum", "ripple"],
+        is_kin: |effect| effect.is_of_place(),
     },
 ];
 
@@ -94,8 +98,8 @@ const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 1] {
 
 static OVER_TIME: [Parameter; KNOTS + 1] = parameters([BEGIN, END]);
 static OVER_POSITION: [Parameter; KNOTS + 1] = parameters([
-    place("start", "begin of the stroke", 0.0),
-    place("end", "end of the stroke", 0.3),
+    place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin),
+    place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd),
 ]);
 
 static FRICTION: About = About {
@@ -128,8 +132,10 @@ static ALONG: About = About {
     reference: "L. Ljung, System Identification, 1999, ch. 5.4 (basis functions)",
 };
 
-const BEGIN: Parameter = moment("begin", "begin of the recording", 0.0);
-const END: Parameter = moment("finish", "end of the recording", 1.0);
+const BEGIN: Parameter =
+    moment("begin", "begin of the recording", 0.0).taken_from(Extent::RecordingBegin);
+const END: Parameter =
+    moment("finish", "end of the recording", 1.0).taken_from(Extent::RecordingEnd);
 
 static STEP: About = About {
     name: "friction-step",

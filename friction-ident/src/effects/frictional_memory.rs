@@ -1,6 +1,8 @@
 //! Frictional memory: the friction follows the velocity with a delay.
 
-use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
+use super::{
+    About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+};
 use crate::axis::Quantity;
 
 /// The level sees `v(t - tau_L)` instead of `v(t)`.
@@ -42,6 +44,15 @@ impl Effect for FrictionalMemory {
         &ABOUT
     }
 
+    /// It delays what a Stribeck hump does.
+    fn companion(&self) -> Option<&'static str> {
+        Some("stribeck")
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw::NONE)
+    }
+
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &FORMS
     }
@@ -81,6 +92,10 @@ impl Memory for FrictionalMemory {
 impl Effect for Lagged {
     fn about(&self) -> &'static About {
         &LAGGED_ABOUT
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw::NONE)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

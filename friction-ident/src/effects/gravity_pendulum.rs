@@ -1,6 +1,6 @@
 //! Weight of a pendulum on a rotary axis.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth, Trials};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth, Trials};
 use crate::axis::{Axis, Quantity};
 
 /// `M sin(q - q_0)`; `M` is mass times gravity times the distance of the centre of mass.
@@ -34,6 +34,14 @@ static ABOUT: About = About {
 impl Effect for GravityPendulum {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn is_of_place(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { smooth: "force += {M} * sin(x - {q_0});", ..CLaw::NONE })
     }
 
     /// Most pendulums hang at the zero of their encoder; a coarse grid passes it by.

@@ -72,6 +72,21 @@ impl Effect for LoadFriction {
         }
     }
 
+    fn flexible_form(&self) -> Option<&'static str> {
+        (self.0 != Load::Both).then_some("load-friction:both")
+    }
+
+    fn is_only_flexible(&self) -> bool {
+        self.0 == Load::Both
+    }
+
+    fn not_compensated(&self) -> Option<&'static str> {
+        Some(match self.0 {
+            Load::Drive | Load::Both => "it needs the force of the drive",
+            Load::Inertia => "it needs the acceleration",
+        })
+    }
+
     fn forms(&self) -> &'static [&'static dyn Effect] {
         if self.0 == Load::Drive { &FORMS } else { &[] }
     }

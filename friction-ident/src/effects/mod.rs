@@ -5,7 +5,9 @@
 //! into a [`Library`].
 
 mod about;
+mod apart;
 mod as_found;
+mod c_law;
 mod drive;
 mod element;
 mod lanes;
@@ -55,8 +57,10 @@ use missing_physics::Recording;
 
 use crate::axis::Axis;
 
-pub use about::{About, Parameter, Role, Scale, Slot};
+pub use about::{About, Extent, Parameter, Role, Scale, Slot};
+pub use apart::Apart;
 pub use as_found::{AsFound, Refused};
+pub use c_law::CLaw;
 pub use drive::{Advance, Drive};
 pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
@@ -149,6 +153,69 @@ pub trait Effect: Sync + Send {
 
     /// How many values each shape is tried at where a fit follows each trial; nothing for the usual numbers.
     fn few_trials(&self) -> Option<&'static [usize]> {
+        None
+    }
+
+    /// Whether every axis has it: the usual effects make the base model where nobody names one, and no challenge hides
+    /// them.
+    fn is_usual(&self) -> bool {
+        false
+    }
+
+    /// The effect by whose absence it is absent, too; a challenge that hides this one has that one as well.
+    fn companion(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Values that a challenge draws the length called `parameter` from; nothing for a range about the typical one.
+    fn drawn_from(&self, _parameter: &str) -> Option<&'static [f64]> {
+        None
+    }
+
+    /// What it looks like in ordinary motion, and what tells them apart; said by one of them is enough.
+    fn told_apart(&self) -> &'static [Apart] {
+        &[]
+    }
+
+    /// Whether it is a force of the place alone: no friction, and a shape of a force that varies freely along the stroke,
+    /// which does not speak against it.
+    fn is_of_place(&self) -> bool {
+        false
+    }
+
+    /// Whether it is a friction level that runs with time: a shape of one that varies freely, which does not speak
+    /// against it.
+    fn is_course_of_time(&self) -> bool {
+        false
+    }
+
+    /// The form, by name, that takes its place before another effect is named.
+    fn flexible_form(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Whether it is only tried in the place of another form.
+    fn is_only_flexible(&self) -> bool {
+        false
+    }
+
+    /// Whether it can be told beside a force that another model gives.
+    fn shows_beside_given_force(&self) -> bool {
+        true
+    }
+
+    /// Whether another model, which has it, may have too much of it: its amplitudes may be negative beside that model.
+    fn may_be_overrated(&self) -> bool {
+        false
+    }
+
+    /// Why no compensator acts on it, beyond what its slots say.
+    fn not_compensated(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Its law in C, for an export; an effect that the compensator acts on needs one.
+    fn c_law(&self) -> Option<CLaw> {
         None
     }
 

@@ -1,6 +1,6 @@
 //! A constant force: weight of an inclined axis, pre-tension, zero error of the current sensor.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, Apart, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::add_to;
 
@@ -27,6 +27,29 @@ static ABOUT: About = About {
 impl Effect for Offset {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// A drive that is not balanced to the last newton, and an amplifier, have it.
+    fn is_usual(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { smooth: "force += {F_0};", ..CLaw::NONE })
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        &[
+            Apart {
+                from: &["asymmetry"],
+                experiment: "break away from rest in both directions: an offset shifts both breakaway forces the same way, \
+                             asymmetry makes them differ in size; add constant speeds over the whole range",
+            },
+            Apart {
+                from: &["spring", "gravity-pendulum"],
+                experiment: "cover the whole stroke slowly in both directions: an offset is the same everywhere",
+            },
+        ]
     }
 
     fn smooth_force(&self, p: Parameters<'_>, _m: &Motion<'_>, out: &mut Smooth<'_>) {

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot};
+use super::c_law::profile;
+use super::{About, Apart, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 
 /// `level += sum_k c_k cos(k pi u)` over the stroke, `u` from 0 to 1: smooth, without a mean, so that
@@ -50,8 +51,8 @@ const fn parameters<const LAST: usize, const ALL: usize>(
     parameters
 }
 
-const START: Parameter = place("start", "begin of the stroke", 0.0);
-const END: Parameter = place("end", "end of the stroke", 0.3);
+const START: Parameter = place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin);
+const END: Parameter = place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd);
 const SHOWS: &str = "(residual x sign of velocity) against position";
 const REFERENCE: &str =
     "M. R. Popovic, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14, 1998";
@@ -84,6 +85,45 @@ static FINE_ABOUT: About = About {
 impl<const COSINES: usize> Effect for PositionFriction<COSINES> {
     fn about(&self) -> &'static About {
         if COSINES == MAIN { &ABOUT } else { &FINE_ABOUT }
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        (COSINES == MAIN).then_some("position-friction:fine")
+    }
+
+    /// In detail it would fit anything a little.
+    fn is_only_flexible(&self) -> bool {
+        COSINES == DETAILED
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(if COSINES == MAIN {
+            CLaw {
+                level: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "level += sum;"),
+                ..CLaw::NONE
+            }
+        } else {
+            CLaw {
+                level: profile!(
+                    "20",
+                    "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}, {c_7}, {c_8}, {c_9}, {c_10},
+        {c_11}, {c_12}, {c_13}, {c_14}, {c_15}, {c_16}, {c_17}, {c_18}, {c_19}, {c_20}",
+                    "level += sum + {p_1} * (u - 0.5) + {p_2} * (u * u - u + 1.0 / 6.0);"
+                ),
+                ..CLaw::NONE
+            }
+        })
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        if COSINES != MAIN {
+            return &[];
+        }
+        &[Apart {
+            from: &["load-friction"],
+            experiment: "cover the whole stroke in both directions with two different loads, or at two accelerations: what \
+                         depends on the position stays where it is",
+        }]
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {

@@ -5,7 +5,8 @@ mod free;
 mod maxwell;
 
 use super::{
-    About, Balance, Correction, Effect, Element, Onset, Parameter, Parameters, Response, Slot, Step,
+    About, Apart, Balance, Correction, Effect, Element, Onset, Parameter, Parameters, Response,
+    Slot, Step,
 };
 use crate::axis::Quantity;
 use crate::simd::{limited, vectorised};
@@ -69,6 +70,20 @@ impl Effect for Presliding {
             Breakaway::Kinetic => &ABOUT,
             Breakaway::Static => &STATIC_ABOUT,
         }
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("presliding:free")
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        if self.breakaway != Breakaway::Kinetic {
+            return &[];
+        }
+        &[Apart {
+            from: &["backlash", "flexible-coupling"],
+            experiment: "reverse with high acceleration: only with backlash does the motor's inertia run free",
+        }]
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {

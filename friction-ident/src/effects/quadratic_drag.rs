@@ -1,6 +1,6 @@
 //! Drag that grows with the square of the speed: air, churning of the lubricant.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -21,6 +21,14 @@ static ABOUT: About = About {
 impl Effect for QuadraticDrag {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn may_be_overrated(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { smooth: "force += {c} * v * fabs(v);", ..CLaw::NONE })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

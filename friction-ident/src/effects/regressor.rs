@@ -47,6 +47,7 @@ fn about(name: &'static str, most: f64, typical: f64) -> About {
             high: most,
             scale: Scale::Linear,
             default: typical,
+            extent: None,
         }]),
         slots: &[Slot::SmoothForce],
         shows: "a residual in proportion to the regressor",

@@ -1,6 +1,7 @@
 //! Friction after a reversal that is not yet, or no longer, what it is further on: balls that must reseat, wipers that fold
 //! over, grease that was pushed aside.
 
+use super::ripple::LEADS;
 use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
 use crate::axis::Quantity;
 
@@ -29,6 +30,11 @@ static ABOUT: About = About {
 impl Effect for ReversalDecay {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// It comes back with each turn of a screw.
+    fn drawn_from(&self, parameter: &str) -> Option<&'static [f64]> {
+        (parameter == "l").then_some(&LEADS)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

@@ -1,7 +1,7 @@
 //! Force ripple: periodic along the stroke, the same for both directions (screw, cogging).
 
 use super::own::{Own, turned};
-use super::{About, Effect, Motion, Parameter, Parameters, Periodic, Repeats, Slot, Smooth};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Periodic, Repeats, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -145,9 +145,36 @@ fn turned_by(values: &[f64], own: Own, pairs: &[(usize, usize, usize)]) -> Optio
     Some(moved)
 }
 
+/// Screw leads on the market, m.
+pub(super) const LEADS: [f64; 4] = [2.5e-3, 4e-3, 5e-3, 10e-3];
+
 impl Effect for Ripple {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn is_of_place(&self) -> bool {
+        true
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("ripple:harmonics")
+    }
+
+    fn drawn_from(&self, parameter: &str) -> Option<&'static [f64]> {
+        (parameter == "l").then_some(&LEADS)
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            smooth: "{
+    const double a = 6.283185307179586 * (x / {l});
+    const double sine = sin(a), cosine = cos(a);
+    const double second = 2.0 * {a_2} * sine * cosine + {b_2} * (1.0 - 2.0 * sine * sine);
+    force += {a_1} * sine + {b_1} * cosine + second;
+}",
+            ..CLaw::NONE
+        })
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {
@@ -172,6 +199,40 @@ impl Effect for Harmonics {
         &HARMONICS_ABOUT
     }
 
+    fn is_of_place(&self) -> bool {
+        true
+    }
+
+    /// Alone it would fit anything a little.
+    fn is_only_flexible(&self) -> bool {
+        true
+    }
+
+    fn drawn_from(&self, parameter: &str) -> Option<&'static [f64]> {
+        (parameter == "l").then_some(&LEADS)
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            smooth: "{
+    static const double a[6] = {{a_1}, {a_2}, {a_3}, {a_4}, {a_5}, {a_6}};
+    static const double b[6] = {{b_1}, {b_2}, {b_3}, {b_4}, {b_5}, {b_6}};
+    const double angle = 6.283185307179586 * (x / {l});
+    const double sine = sin(angle), cosine = cos(angle);
+    double sine_k = sine, cosine_k = cosine, sum = 0.0;
+    int k;
+    for (k = 0; k < 6; k++) {
+        const double next = sine_k * cosine + cosine_k * sine;
+        sum += a[k] * sine_k + b[k] * cosine_k;
+        cosine_k = cosine_k * cosine - sine_k * sine;
+        sine_k = next;
+    }
+    force += sum;
+}",
+            ..CLaw::NONE
+        })
+    }
+
     fn periodic(&self) -> Option<Periodic> {
         Some(Periodic { ranked: false, columns: Some(six_columns), ..PERIODIC })
     }
@@ -189,6 +250,28 @@ impl Effect for Harmonics {
 impl Effect for Direction {
     fn about(&self) -> &'static About {
         &DIRECTION_ABOUT
+    }
+
+    fn is_of_place(&self) -> bool {
+        true
+    }
+
+    fn drawn_from(&self, parameter: &str) -> Option<&'static [f64]> {
+        (parameter == "l").then_some(&LEADS)
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            smooth: "{
+    const double a = 6.283185307179586 * (x / {l});
+    force += 0.5 * (({a_p} + {a_m}) * sin(a) + ({b_p} + {b_m}) * cos(a));
+}",
+            level: "{
+    const double a = 6.283185307179586 * (x / {l});
+    level += 0.5 * (({a_p} - {a_m}) * sin(a) + ({b_p} - {b_m}) * cos(a));
+}",
+            ..CLaw::NONE
+        })
     }
 
     fn periodic(&self) -> Option<Periodic> {

@@ -1,6 +1,8 @@
 //! Rising static friction: the longer the rest, the harder the breakaway.
 
-use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
+use super::{
+    About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -55,6 +57,13 @@ impl Effect for RisingStaticFriction {
         &ABOUT
     }
 
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            level: "level += {dF} * dwell / (dwell + {gamma}) / (1.0 + (w / {v_s}) * (w / {v_s}));",
+            ..CLaw::NONE
+        })
+    }
+
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &FORMS
     }
@@ -74,6 +83,10 @@ impl Effect for RisingStaticFriction {
 impl Effect for Bond {
     fn about(&self) -> &'static About {
         &BOND_ABOUT
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw::NONE)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

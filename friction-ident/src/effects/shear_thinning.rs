@@ -1,6 +1,6 @@
 //! Viscous friction that saturates: the lubricant thins under shear.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 
 /// `dF tanh(v / v_n)`: viscous with `dF / v_n` at low speed, limited by the shear stress that the
@@ -31,6 +31,10 @@ static ABOUT: About = About {
 impl Effect for ShearThinning {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { smooth: "force += {dF} * tanh(v / {v_n});", ..CLaw::NONE })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

@@ -1,6 +1,6 @@
 //! A spring to the machine's base: cable chain, bellows, counterbalance.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, Apart, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -18,6 +18,7 @@ static ABOUT: About = About {
             low: -10.0,
             ..Parameter::shape("x_0", "position without force", Quantity::Length, (0.0, 10.0), 0.0)
                 .linear()
+                .taken_from(Extent::StrokeMiddle)
         },
     ],
     slots: &[Slot::SmoothForce],
@@ -28,6 +29,25 @@ static ABOUT: About = About {
 impl Effect for Spring {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn is_of_place(&self) -> bool {
+        true
+    }
+
+    fn may_be_overrated(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { smooth: "force += {k} * (x - {x_0});", ..CLaw::NONE })
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        &[Apart {
+            from: &["position-friction", "ripple", "gravity-pendulum"],
+            experiment: "cover the whole stroke in both directions at two constant speeds",
+        }]
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

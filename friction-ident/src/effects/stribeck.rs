@@ -2,7 +2,7 @@
 
 mod free;
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot};
+use super::{About, Apart, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -77,6 +77,47 @@ impl Effect for Stribeck {
             Form::Gaussian => &GAUSSIAN_ABOUT,
             Form::Exponential => &EXPONENTIAL_ABOUT,
         }
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("stribeck:free")
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(match self.0 {
+            Form::Rational => CLaw {
+                level: "level += {dF} * bond * ({v_s} * {v_s}) / ({v_s} * {v_s} + w * w);",
+                hump: "({v_s} * {v_s}) / ({v_s} * {v_s} + w * w)",
+                ..CLaw::NONE
+            },
+            Form::Gaussian => CLaw {
+                level: "level += {dF} * bond * exp(-(w / {v_s}) * (w / {v_s}));",
+                hump: "exp(-(w / {v_s}) * (w / {v_s}))",
+                ..CLaw::NONE
+            },
+            Form::Exponential => CLaw {
+                level: "level += {dF} * bond * exp(-pow(fabs(w / {v_s}), {delta}));",
+                hump: "exp(-pow(fabs(w / {v_s}), {delta}))",
+                ..CLaw::NONE
+            },
+        })
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        if self.0 != Form::Rational {
+            return &[];
+        }
+        &[
+            Apart {
+                from: &["presliding"],
+                experiment: "reverse within 5 to 50 µm at several rates (only presliding is independent of rate), and creep \
+                             at constant speeds from 0.05 to 5 mm/s without reversals",
+            },
+            Apart {
+                from: &["frictional-memory", "rising-static-friction"],
+                experiment: "rest for 0.1 to 100 s before breaking away, and cross the low speeds both slowly and fast",
+            },
+        ]
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {

@@ -1,7 +1,7 @@
 //! Viscous friction: the shear of a lubricant film.
 
 use super::own::Own;
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, Apart, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -22,6 +22,26 @@ static ABOUT: About = About {
 impl Effect for Viscous {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// Whatever is greased has it.
+    fn is_usual(&self) -> bool {
+        true
+    }
+
+    fn may_be_overrated(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw { smooth: "force += {F_v} * v;", ..CLaw::NONE })
+    }
+
+    fn told_apart(&self) -> &'static [Apart] {
+        &[Apart {
+            from: &["quadratic-drag", "shear-thinning"],
+            experiment: "run constant speeds over a factor of ten, up to the highest the axis allows",
+        }]
     }
 
     fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {

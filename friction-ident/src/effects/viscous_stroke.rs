@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::c_law::profile;
+use super::{About, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 
 /// `v sum_k c_k cos(k pi u)` over the stroke, `u` from 0 to 1: smooth, without a mean, so that it does not compete with
@@ -32,8 +33,8 @@ static ABOUT: About = About {
         amplitude("c_4", 0.0),
         amplitude("c_5", 0.0),
         amplitude("c_6", 0.0),
-        place("start", "begin of the stroke", 0.0),
-        place("end", "end of the stroke", 0.3),
+        place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin),
+        place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd),
     ],
     slots: &[Slot::SmoothForce],
     shows: "(residual / velocity) against position, the same for fast and slow passes",
@@ -43,6 +44,13 @@ static ABOUT: About = About {
 impl Effect for ViscousStroke {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            smooth: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "force += sum * v;"),
+            ..CLaw::NONE
+        })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

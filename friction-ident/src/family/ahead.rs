@@ -264,7 +264,9 @@ impl Ahead for View<'_> {
 pub(super) fn rivals(family: &FrictionFamily) -> Vec<Rival> {
     let term = |name: &str| family.terms.iter().position(|term| term.name == name);
     let rival = |free: &Free| {
-        let kin = free.kin.iter().filter_map(|name| term(name)).collect();
+        let effects = family.effects.iter().enumerate();
+        let kin =
+            effects.filter(|(_, effect)| (free.is_kin)(**effect)).map(|(k, _)| k + 1).collect();
         Some(Rival { term: term(free.effect.about().name)?, title: free.title, kin })
     };
     RIVALS.iter().filter_map(rival).collect()

@@ -1,74 +1,77 @@
 //! What tells effects apart that look alike in ordinary motion.
 
-/// Pairs (or more) of effects that look alike in ordinary motion, and what tells them apart.
-const APART: [(&[&str], &str); 10] = [
-    (
-        &["offset", "asymmetry"],
-        "break away from rest in both directions: an offset shifts both breakaway forces the same way, asymmetry makes them differ in size; add constant speeds over the whole range",
-    ),
-    (
-        &["viscous", "quadratic-drag", "shear-thinning"],
-        "run constant speeds over a factor of ten, up to the highest the axis allows",
-    ),
-    (
-        &["stribeck", "presliding"],
-        "reverse within 5 to 50 µm at several rates (only presliding is independent of rate), and creep at constant speeds from 0.05 to 5 mm/s without reversals",
-    ),
-    (
-        &["stribeck", "frictional-memory", "rising-static-friction"],
-        "rest for 0.1 to 100 s before breaking away, and cross the low speeds both slowly and fast",
-    ),
-    (
-        &["actuator-lag", "input-delay"],
-        "add a fast sine sweep (to a third of the sampling frequency): a delay turns the phase in proportion to frequency, a lag also lowers the gain",
-    ),
-    (
-        &["load-friction", "position-friction"],
-        "cover the whole stroke in both directions with two different loads, or at two accelerations: what depends on the position stays where it is",
-    ),
-    (
-        &["offset", "spring", "gravity-pendulum"],
-        "cover the whole stroke slowly in both directions: an offset is the same everywhere",
-    ),
-    (
-        &["spring", "position-friction", "ripple", "gravity-pendulum"],
-        "cover the whole stroke in both directions at two constant speeds",
-    ),
-    (
-        &["ripple", "encoder"],
-        "cover the same stroke at constant speeds a factor of three apart: a ripple keeps its force, what an error of the encoder feigns grows with the square of the speed",
-    ),
-    (
-        &["backlash", "presliding", "flexible-coupling"],
-        "reverse with high acceleration: only with backlash does the motor's inertia run free",
-    ),
-];
+use crate::effects::{Apart, Effect};
 
-/// The experiment that tells these effects apart.
-pub fn experiment(terms: &[String]) -> String {
+/// What is said where no effect knows what it looks like.
+const USUAL: &str = "record constant speeds from 0.5 mm/s to the highest in both directions over the whole stroke, and small \
+                     reversals at several rates.";
+
+/// The experiment that tells the effects called `terms` apart, by what `effects` say of themselves: the one for most of
+/// them.
+pub fn experiment(effects: &[&dyn Effect], terms: &[String]) -> String {
     let main = |term: &String| term.split(':').next().unwrap_or_default().to_owned();
     let terms: Vec<String> = terms.iter().map(main).collect();
-    let matching = |names: &[&str]| terms.iter().filter(|t| names.contains(&t.as_str())).count();
-    let best = APART.iter().max_by_key(|(names, _)| matching(names));
+    let has = |name: &str| terms.iter().any(|term| term == name);
+    let alike = effects.iter().flat_map(|effect| {
+        let name = effect.about().name;
+        effect.told_apart().iter().map(move |apart| (name, apart))
+    });
+    let matching = |name: &str, apart: &Apart| {
+        usize::from(has(name)) + apart.from.iter().filter(|other| has(other)).count()
+    };
+    let best = alike.max_by_key(|(name, apart)| matching(name, apart));
     match best {
-        Some((names, words)) if matching(names) > 1 => format!("{words}."),
-        _ => {
-            "record constant speeds from 0.5 mm/s to the highest in both directions over the whole \
-              stroke, and small reversals at several rates."
-                .to_owned()
-        }
+        Some((name, apart)) if matching(name, apart) > 1 => format!("{}.", apart.experiment),
+        _ => USUAL.to_owned(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effects::{ALL, About};
+
+    /// An effect of a user's own, which says what it looks like.
+    struct Own;
+
+    static OWN: About = About {
+        name: "own",
+        title: "own",
+        equation: "0",
+        parameters: &[],
+        slots: &[],
+        shows: "nothing",
+        reference: "none",
+    };
+
+    impl Effect for Own {
+        fn about(&self) -> &'static About {
+            &OWN
+        }
+
+        fn told_apart(&self) -> &'static [Apart] {
+            &[Apart { from: &["ripple"], experiment: "turn it off" }]
+        }
+    }
+
+    #[test]
+    fn an_effect_of_a_user_says_what_tells_it_apart() {
+        let names = ["ripple".to_owned(), "own".to_owned()];
+        let mut effects = ALL.to_vec();
+        assert_eq!(experiment(&effects, &names), USUAL);
+        effects.push(&Own);
+        assert_eq!(experiment(&effects, &names), "turn it off.");
+    }
 
     #[test]
     fn confusable_effects_get_their_experiment() {
-        let names = ["actuator-lag".to_owned(), "input-delay".to_owned()];
-        assert!(experiment(&names).contains("sweep"));
-        let forms = ["stribeck:gaussian".to_owned(), "presliding:lugre".to_owned()];
-        assert!(experiment(&forms).contains("creep"));
+        let told = |names: &[&str]| {
+            experiment(ALL, &names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>())
+        };
+        assert!(told(&["actuator-lag", "input-delay"]).contains("sweep"));
+        assert!(told(&["stribeck:gaussian", "presliding:lugre"]).contains("creep"));
+        // Two alike of three; of two sentences on the same two the one said later.
+        assert!(told(&["gravity-pendulum", "drift", "spring"]).contains("two constant speeds"));
+        assert_eq!(told(&["drift", "encoder"]), USUAL);
     }
 }

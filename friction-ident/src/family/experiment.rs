@@ -5,22 +5,27 @@
 //! whose smallest separation over all pairs, per unit of time, is the largest.
 
 mod motions;
+mod told;
 
 use missing_physics::diagnosis::noise;
 use missing_physics::fit::{self, Fit};
 use missing_physics::statistics::basis::dot;
 use missing_physics::statistics::split::Split;
-use missing_physics::{DiscoverError, Fitted, Recording, terms};
+use missing_physics::{Channel, DiscoverError, Fitted, Recording, RecordingError, terms};
 use rayon::prelude::*;
+use serde::Serialize;
 
 use self::motions::{Motion, Room, motions};
 use super::{FrictionFamily, Options};
+use crate::axis::Quantity;
 use crate::closed_loop::{Controller, Pd, Sample, Setup, closed_loop};
 use crate::driven::{MeasuredMotion, force_along};
 use crate::model::Model;
 use crate::reference::Reference;
 use crate::signal::quantile;
 
+/// A motion that brings less than this factor per root of time over the recording at hand is hardly worth running.
+const MUCH: f64 = 1.5;
 /// Share of the stroke that is kept free at either end.
 const MARGIN: f64 = 0.05;
 /// Speeds and accelerations above this quantile are not asked for again.
@@ -52,16 +57,58 @@ pub struct Experiment {
     /// How many times as fast as in the recording at hand the standard deviations, which grow with the
     /// root of time, come together.
     pub gain: f64,
-    /// Standard deviation of the force that no model explains, N or N m.
+    /// Standard deviation of the force that no model explains, in `unit`.
     pub noise: f64,
-    /// Every motion that was tried, with the standard deviations of its smallest separation.
-    pub tried: Vec<(String, f64)>,
+    /// Unit of the forces.
+    pub unit: &'static str,
+    /// Unit of the reference's positions.
+    pub position_unit: &'static str,
+    /// Every motion that was tried.
+    pub tried: Vec<Tried>,
+}
+
+/// A motion that was tried.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tried {
+    /// Its name.
+    pub motion: String,
+    /// Standard deviations of its smallest separation; 0 where it could not be simulated.
+    pub deviations: f64,
+}
+
+impl Experiment {
+    /// Duration of the motion, s.
+    pub fn duration(&self) -> f64 {
+        self.reference.position.len() as f64 * self.reference.sample_time
+    }
+
+    /// How many times the noise the force of a separation is.
+    pub fn noises(&self, separation: &Separation) -> f64 {
+        separation.force / self.noise
+    }
+
+    /// Whether the motion tells them apart so much better than the recording at hand that it is worth running.
+    pub fn is_worth_running(&self) -> bool {
+        self.gain >= MUCH
+    }
+
+    /// The motion as a recording with the channel `position`.
+    ///
+    /// # Errors
+    /// A motion that is too short or not finite.
+    pub fn recording(&self) -> Result<Recording, RecordingError> {
+        let step = self.reference.sample_time;
+        let time = (0..self.reference.position.len()).map(|k| k as f64 * step).collect();
+        let position = self.reference.position.clone();
+        let channel = Channel::new("position", self.position_unit, position);
+        Recording::new("experiment", time, vec![channel])
+    }
 }
 
 /// How far the forces of two models differ after each has adapted its parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
-    /// Root mean square where they differ most (5 % of the instants), N or N m.
+    /// Root mean square where they differ most (5 % of the instants), in the unit of the force.
     pub force: f64,
     /// All differences together in standard deviations of the noise: their root sum square, taken at
     /// independent instants, over the noise.
@@ -84,7 +131,8 @@ pub enum ExperimentError {
 }
 
 impl FrictionFamily {
-    /// The motion that separates `effects` best, each of them added to a model of the effects `below`.
+    /// The motion that separates `effects` best, each of them added to a model of the effects `below` that are not among
+    /// them.
     ///
     /// # Errors
     /// See [`ExperimentError`].
@@ -97,7 +145,9 @@ impl FrictionFamily {
         if effects.len() < 2 {
             return Err(ExperimentError::NoRivals(effects.len()));
         }
-        let rivals = self.rivals(below, effects, seed)?;
+        let below: Vec<String> =
+            below.iter().filter(|name| !effects.contains(name)).cloned().collect();
+        let rivals = self.rivals(&below, effects, seed)?;
         let best = rivals.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
         let residual = best.map_or(&[][..], |fit| fit.residual.as_slice());
         let size = (dot(residual, residual) / residual.len().max(1) as f64).sqrt();
@@ -141,11 +191,13 @@ impl FrictionFamily {
             here,
             gain,
             noise,
+            unit: self.effort.unit(self.axis, Quantity::Force),
+            position_unit: self.axis.unit(Quantity::Length),
             tried: tried
                 .iter()
-                .map(|(motion, separation)| {
-                    let deviations = separation.as_ref().map_or(0.0, |s| s.deviations);
-                    (motion.name.to_owned(), deviations)
+                .map(|(motion, separation)| Tried {
+                    motion: motion.name.to_owned(),
+                    deviations: separation.as_ref().map_or(0.0, |s| s.deviations),
                 })
                 .collect(),
         })

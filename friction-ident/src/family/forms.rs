@@ -7,31 +7,6 @@ use missing_physics::report::{NamedValue, Refusal};
 use super::FrictionFamily;
 use crate::effects::{AsFound, Effect, Refused};
 
-/// Each form and the more flexible one that takes its place before another effect is named.
-const FLEXIBLE: [(&str, &str); 13] = [
-    ("stribeck", "stribeck:free"),
-    ("stribeck:gaussian", "stribeck:free"),
-    ("stribeck:exponential", "stribeck:free"),
-    ("presliding", "presliding:free"),
-    ("presliding:static", "presliding:free"),
-    ("presliding:dahl", "presliding:free"),
-    ("presliding:lugre", "presliding:free"),
-    ("presliding:maxwell-slip", "presliding:free"),
-    ("position-friction", "position-friction:fine"),
-    ("ripple", "ripple:harmonics"),
-    ("load-friction", "load-friction:both"),
-    ("load-friction:inertia", "load-friction:both"),
-    ("actuator-lag", "actuator-lag:second-order"),
-];
-/// Forms that only take the place of another one: alone they would fit anything a little.
-const ONLY_FLEXIBLE: [&str; 6] = [
-    "stribeck:free",
-    "presliding:free",
-    "position-friction:fine",
-    "ripple:harmonics",
-    "load-friction:both",
-    "actuator-lag:second-order",
-];
 /// Share of the mass that a second body begins with.
 const SECOND_MASS: f64 = 0.5;
 /// Shares of the friction that it is tried with, behind a coupling and behind a gap.
@@ -54,13 +29,13 @@ impl FrictionFamily {
 
     /// Whether a term is tried by itself, not only in the place of another form.
     pub(super) fn is_candidate(&self, term: usize) -> bool {
-        !ONLY_FLEXIBLE.contains(&self.terms[term].name.as_str())
+        term.checked_sub(1).is_none_or(|index| !self.effects[index].is_only_flexible())
     }
 
     /// The model with a term in its more flexible form, beginning where it is.
     pub(super) fn in_flexible_form(&self, model: &Fitted, term: usize) -> Option<Fitted> {
         let name = self.terms[term].name.as_str();
-        let to = FLEXIBLE.iter().find(|(from, _)| *from == name)?.1;
+        let to = self.effects[term.checked_sub(1)?].flexible_form()?;
         let to = self.terms.iter().position(|term| term.name == to)?;
         let position = model.terms.iter().position(|t| *t == term)?;
         let old = &model.values[model.range(self, position)];

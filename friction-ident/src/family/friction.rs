@@ -25,8 +25,6 @@ use crate::model::{MASS, Model};
 
 /// What acts on something else than the sliding mass, or yields before it slides.
 const ELSEWHERE: [Slot; 4] = [Slot::Drive, Slot::Sensor, Slot::Attached, Slot::Contact];
-/// Forces of the place alone.
-const OF_PLACE: [&str; 3] = ["spring", "gravity-pendulum", "ripple"];
 /// Fewest samples of a direction, and the least spread of its speeds about their mean, for a line.
 const FEWEST: usize = 100;
 const SPREAD: f64 = 0.1;
@@ -113,8 +111,7 @@ impl FrictionFamily {
             .iter()
             .filter(|term| {
                 let about = term.effect().about();
-                let stem = about.name.split(':').next().unwrap_or(about.name);
-                ELSEWHERE.iter().any(|slot| about.acts_on(*slot)) || OF_PLACE.contains(&stem)
+                ELSEWHERE.iter().any(|slot| about.acts_on(*slot)) || term.effect().is_of_place()
             })
             .map(crate::model::Term::name)
             .collect();

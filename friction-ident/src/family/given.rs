@@ -47,11 +47,6 @@ const LEAST_OF_FORCE: f64 = 0.005;
 /// the noise. The recorded acceleration holds that noise, so that a least-squares fit takes part of it for less inertia:
 /// at most as much as there is.
 const LEAST_OF_NOISE: f64 = 1.0;
-/// Effects that cannot be told beside a given force: what the sensor shows is in that force already, and a lag of second
-/// order is a delay with what other people's filters make.
-pub(super) const UNSEEN: [&str; 2] = ["encoder", "actuator-lag:second-order"];
-/// Effects of which another model may have too much.
-const DEVIATIONS: [&str; 4] = ["coulomb", "viscous", "quadratic-drag", "spring"];
 /// Trial shifts by which the noise is judged.
 const SHIFTS: i32 = 6;
 /// Forces below this share of the recorded one are not looked for: no two programs agree better.
@@ -181,6 +176,11 @@ impl Given {
 }
 
 impl FrictionFamily {
+    /// Whether a term can be told beside the given force; the timing of that force always can.
+    fn shows_beside_given_force(&self, term: usize) -> bool {
+        term.checked_sub(1).is_none_or(|index| self.effects[index].shows_beside_given_force())
+    }
+
     /// Learns how the prediction errors beside the given force are to be whitened, and what noise makes of them.
     pub(super) fn weigh_given(&mut self) {
         let interval = self.prepared.interval;
@@ -225,9 +225,10 @@ pub(super) fn bandwidth(interval: f64) -> f64 {
     BANDWIDTH.clamp(SHARES.0 / interval, SHARES.1 / interval)
 }
 
-/// Lets the amplitudes of effects that the given force has already be negative.
-pub(super) fn as_deviations(terms: &mut [Term]) {
-    for term in terms.iter_mut().filter(|term| DEVIATIONS.contains(&term.name.as_str())) {
+/// Lets the amplitudes of effects that the given force has already be negative; the first of `terms` is no effect.
+pub(super) fn as_deviations(terms: &mut [Term], effects: &[&dyn Effect]) {
+    let overrated = terms.iter_mut().skip(1).zip(effects);
+    for (term, _) in overrated.filter(|(_, effect)| effect.may_be_overrated()) {
         for parameter in &mut term.parameters {
             if parameter.role == missing_physics::Role::Amplitude {
                 parameter.lower = -parameter.upper;

@@ -11,8 +11,6 @@ use missing_physics::{Hold, ModelFamily, Recording, fit, terms};
 use super::ahead::View;
 use super::{FrictionFamily, Options, PreparationError};
 
-/// Effects of the model by which it is decided.
-const SIMPLE: [&str; 3] = ["coulomb", "viscous", "offset"];
 /// Log-likelihood per sample from which the simplest model decides.
 const CLEAR: f64 = 0.2;
 /// Degrees of freedom of the errors.
@@ -68,8 +66,8 @@ fn likelihood(family: &FrictionFamily) -> Option<f64> {
     let ahead = family.thinned.as_ref().or(family.ahead.as_ref())?;
     let moving = ahead.predictor.counted_and_moving();
     let view = View::new(family, ahead);
-    let known = |name: &&&str| family.terms().iter().any(|term| term.name == ***name);
-    let names: Vec<String> = SIMPLE.iter().filter(known).map(|name| (*name).to_owned()).collect();
+    let usual = family.effects.iter().filter(|effect| effect.is_usual());
+    let names: Vec<String> = usual.map(|effect| effect.about().name.to_owned()).collect();
     let terms = terms(family, &names).ok()?;
     let everywhere = vec![1.0; family.target().len()];
     let mut model = fit::identify(family, &terms, &everywhere, 1).fit.model;

@@ -211,7 +211,7 @@ impl Limits {
 /// Parameters that this comparison takes from the recording: those that are fixed by nature (a
 /// stroke), and the neutral position of a spring, which only shifts the offset.
 pub fn is_fixed(parameter: &effects::Parameter) -> bool {
-    parameter.role == effects::Role::Fixed || parameter.name == "x_0"
+    parameter.role == effects::Role::Fixed || parameter.extent.is_some()
 }
 
 /// A lag or a delay of 0 is none, and a small one acts in proportion: in a comparison of forces it

@@ -44,7 +44,7 @@ use crate::axis::{Axis, Effort};
 use crate::driven::{MeasuredMotion, columns_along, force_along};
 use crate::effects::beside::{BESIDE, MODEL_FORCE};
 use crate::effects::free::{self, RIVALS, Span};
-use crate::effects::{Effect, Library, Periodic, Repeats, Slot, formula, search};
+use crate::effects::{Effect, Extent, Library, Periodic, Repeats, Slot, formula, search};
 use crate::known::Known;
 use crate::model::{MASS, Model, ModelError, SHIFT, SMOOTHING, Timing, address};
 
@@ -141,7 +141,7 @@ impl FrictionFamily {
         let mut terms = vec![if given { limits.timing() } else { limits.mass() }];
         terms.extend(effects.iter().map(|effect| limits.term(effect.about())));
         if given {
-            given::as_deviations(&mut terms);
+            given::as_deviations(&mut terms, &effects);
         }
         options.known.apply(&mut terms)?;
         let coordinates = coordinates::coordinates(&prepared, (axis, effort), recording);
@@ -249,7 +249,7 @@ impl FrictionFamily {
                 let value = if let Some(known) = self.known_value(effect, parameter.name) {
                     Some(known)
                 } else if limits::is_fixed(parameter) {
-                    self.fixed(parameter.name)
+                    parameter.extent.and_then(|extent| self.extent(extent))
                 } else {
                     values.next().copied()
                 };
@@ -396,15 +396,14 @@ impl FrictionFamily {
 
     /// Parameters that are not fitted: stroke and top speed are those of the recording, a spring is relaxed in
     /// its middle.
-    fn fixed(&self, name: &str) -> Option<f64> {
-        match name {
-            "start" => Some(self.stroke.0),
-            "end" => Some(self.stroke.1),
-            "begin" => self.recording.time().first().copied(),
-            "finish" => self.recording.time().last().copied(),
-            "v_high" => Some(self.top_speed),
-            "x_0" => Some(f64::midpoint(self.stroke.0, self.stroke.1)),
-            _ => None,
+    fn extent(&self, of: Extent) -> Option<f64> {
+        match of {
+            Extent::StrokeBegin => Some(self.stroke.0),
+            Extent::StrokeEnd => Some(self.stroke.1),
+            Extent::StrokeMiddle => Some(f64::midpoint(self.stroke.0, self.stroke.1)),
+            Extent::RecordingBegin => self.recording.time().first().copied(),
+            Extent::RecordingEnd => self.recording.time().last().copied(),
+            Extent::TopSpeed => Some(self.top_speed),
         }
     }
 
@@ -608,7 +607,7 @@ impl ModelFamily for FrictionFamily {
             return false;
         };
         let name = effect.about().name;
-        if self.given.is_some() && given::UNSEEN.contains(&name) {
+        if self.given.is_some() && !effect.shows_beside_given_force() {
             return false;
         }
         if !effect.is_determined() || RIVALS.iter().any(|free| free.effect.about().name == name) {
@@ -659,8 +658,9 @@ impl ModelFamily for FrictionFamily {
     fn course(&self, term: usize, values: &[f64]) -> Course {
         let about = &self.terms[term];
         let unit = about.parameters.first().map_or("", |parameter| &parameter.unit);
-        let moment = |name| self.fixed(name).unwrap_or_default();
-        let time = Span { begin: moment("begin"), end: moment("finish"), unit: "s" };
+        let moment = |extent| self.extent(extent).unwrap_or_default();
+        let (begin, end) = (moment(Extent::RecordingBegin), moment(Extent::RecordingEnd));
+        let time = Span { begin, end, unit: "s" };
         let length = if self.axis == Axis::Rotary { "rad" } else { "m" };
         let stroke = Span { begin: self.stroke.0, end: self.stroke.1, unit: length };
         let course = free::course(&about.name, values, (time, stroke), unit);
@@ -668,7 +668,7 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn experiment(&self, terms: &[String]) -> Option<String> {
-        Some(apart::experiment(terms))
+        Some(apart::experiment(&self.effects, terms))
     }
 
     fn generic_term(&self, coordinate: &Coordinate, shape: &Generic) -> Option<String> {

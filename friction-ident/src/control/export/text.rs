@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use super::super::compensator::Compensator;
-use super::laws::{Law, law};
 use super::{ExportError, Units};
 use crate::axis::Axis;
+use crate::effects::CLaw;
 use crate::model::Term;
 
 /// Contacts that are written in C, and whether they break at the level at rest.
@@ -15,7 +15,7 @@ pub(super) struct Writer<'a> {
     compensator: &'a Compensator,
     units: Units,
     name: &'a str,
-    laws: Vec<(&'a Term, Law)>,
+    laws: Vec<(&'a Term, CLaw)>,
     /// Whether the contact breaks at the level at rest; none without a contact.
     contact: Option<bool>,
 }
@@ -27,7 +27,8 @@ impl<'a> Writer<'a> {
         name: &'a str,
     ) -> Result<Self, ExportError> {
         let of = |term: &'a Term| {
-            let law = law(term).ok_or_else(|| ExportError::Effect(term.name().to_owned()))?;
+            let law =
+                term.effect().c_law().ok_or_else(|| ExportError::Effect(term.name().to_owned()))?;
             Ok((term, law))
         };
         let laws = compensator.terms().iter().map(of).collect::<Result<_, ExportError>>()?;
@@ -220,7 +221,7 @@ impl<'a> Writer<'a> {
         )
     }
 
-    fn statements(&self, part: impl Fn(&Law) -> &'static str) -> String {
+    fn statements(&self, part: impl Fn(&CLaw) -> &'static str) -> String {
         let mut text = String::new();
         for (term, law) in &self.laws {
             for line in filled(term, part(law)).lines() {

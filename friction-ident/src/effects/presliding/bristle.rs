@@ -46,6 +46,10 @@ impl Effect for Bristle {
         if self.damped { &LUGRE_ABOUT } else { &DAHL_ABOUT }
     }
 
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("presliding:free")
+    }
+
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
     }

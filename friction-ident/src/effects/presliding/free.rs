@@ -51,6 +51,11 @@ impl Effect for Free {
         &ABOUT
     }
 
+    /// Alone it would fit anything a little.
+    fn is_only_flexible(&self) -> bool {
+        true
+    }
+
     /// The elements share the level evenly at first, as a grid over all shares would be some thousand trials.
     fn trials(&self, parameter: &str) -> Option<Trials> {
         Some(match parameter {

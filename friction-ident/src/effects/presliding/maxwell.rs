@@ -41,6 +41,10 @@ impl Effect for MaxwellSlip {
         &ABOUT
     }
 
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("presliding:free")
+    }
+
     fn few_trials(&self) -> Option<&'static [usize]> {
         Some(&[6, 1])
     }

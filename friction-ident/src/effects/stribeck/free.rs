@@ -1,6 +1,7 @@
 //! A friction curve of any shape over speed.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Quantity, SHOWS, Slot};
+use super::super::Extent;
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Quantity, SHOWS, Slot};
 use crate::simd::{ln, vectorised};
 
 /// Number of knots with a value of their own; the last of all has none.
@@ -69,16 +70,102 @@ static ABOUT: About = About {
             Quantity::Velocity,
             (1e-6, 10.0),
             0.05,
-        ),
+        )
+        .taken_from(Extent::TopSpeed),
     ],
     slots: &[Slot::FrictionLevel],
     shows: SHOWS,
     reference: "R. Stribeck, Zeitschrift des VDI 46, 1902 (measured curves)",
 };
 
+/// How far `w` has gone, 0..1, from a knot of the free curve to the next one.
+macro_rules! gone {
+    ($from:literal, $to:literal) => {
+        concat!(
+            "fmin(fmax((asinh(fabs(w) / (0.002 * {v_high})) - ",
+            $from,
+            ") / (",
+            $to,
+            " - ",
+            $from,
+            "), 0.0), 1.0)"
+        )
+    };
+}
+
+/// What the free curve has at `w` of what it has at rest, where that is a hump.
+const FREE_SHARE: &str = concat!(
+    "{c_0} > 0.0 ? fmin(fmax((",
+    "{c_0} * (1.0 - ",
+    gone!("0.0", "0.48121182505960347"),
+    ") + {c_1} * (",
+    gone!("0.0", "0.48121182505960347"),
+    " - ",
+    gone!("0.48121182505960347", "1.1947632172871094"),
+    ") + {c_2} * (",
+    gone!("0.48121182505960347", "1.1947632172871094"),
+    " - ",
+    gone!("1.1947632172871094", "2.0947125472611012"),
+    ") + {c_3} * (",
+    gone!("1.1947632172871094", "2.0947125472611012"),
+    " - ",
+    gone!("2.0947125472611012", "2.7764722807237177"),
+    ") + {c_4} * (",
+    gone!("2.0947125472611012", "2.7764722807237177"),
+    " - ",
+    gone!("2.7764722807237177", "3.4023066454805946"),
+    ") + {c_5} * (",
+    gone!("2.7764722807237177", "3.4023066454805946"),
+    " - ",
+    gone!("3.4023066454805946", "4.09462222433053"),
+    ") + {c_6} * (",
+    gone!("3.4023066454805946", "4.09462222433053"),
+    " - ",
+    gone!("4.09462222433053", "4.78756117999381"),
+    ") + {c_7} * (",
+    gone!("4.09462222433053", "4.78756117999381"),
+    " - ",
+    gone!("4.78756117999381", "5.703793585582131"),
+    ") + {c_8} * (",
+    gone!("4.78756117999381", "5.703793585582131"),
+    " - ",
+    gone!("5.703793585582131", "6.907756278980637"),
+    ")",
+    ") / {c_0}, 0.0), 1.0) : 1.0 - ",
+    gone!("0.0", "0.48121182505960347")
+);
+
 impl Effect for Free {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    /// Alone it would fit anything a little.
+    fn is_only_flexible(&self) -> bool {
+        true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            level: "{
+    static const double knots[10] = {0.0, 0.48121182505960347, 1.1947632172871094, 2.0947125472611012,
+        2.7764722807237177, 3.4023066454805946, 4.09462222433053, 4.78756117999381,
+        5.703793585582131, 6.907756278980637};
+    static const double c[9] = {{c_0}, {c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}, {c_7}, {c_8}};
+    const double z = asinh(fabs(w) / (0.002 * {v_high}));
+    double before = 1.0, sum = 0.0;
+    int k;
+    for (k = 0; k < 9; k++) {
+        const double gone = (z - knots[k]) / (knots[k + 1] - knots[k]);
+        const double next = gone < 0.0 ? 0.0 : (gone > 1.0 ? 1.0 : gone);
+        sum += c[k] * (before - next);
+        before = next;
+    }
+    level += bond * sum;
+}",
+            hump: FREE_SHARE,
+            ..CLaw::NONE
+        })
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {

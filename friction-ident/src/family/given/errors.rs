@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::super::FrictionFamily;
 use super::super::ahead::rivals;
-use super::{Given, UNSEEN};
+use super::Given;
 use crate::effects::Slot;
 
 /// Trial delays: the shortest and the longest in samples, and how many.
@@ -146,8 +146,8 @@ impl Ahead for View<'_> {
     }
 
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
-        let is_unseen = |t: &usize| UNSEEN.contains(&self.family.terms()[*t].name.as_str());
-        self.family.in_flexible_form(model, term).filter(|model| !model.terms.iter().any(is_unseen))
+        let shows = |t: &usize| self.family.shows_beside_given_force(*t);
+        self.family.in_flexible_form(model, term).filter(|model| model.terms.iter().all(shows))
     }
 
     fn variations(&self, model: &Fitted) -> Vec<Fitted> {
@@ -171,6 +171,6 @@ impl Ahead for View<'_> {
     }
 
     fn is_candidate(&self, term: usize) -> bool {
-        self.family.is_candidate(term) && !UNSEEN.contains(&self.family.terms()[term].name.as_str())
+        self.family.is_candidate(term) && self.family.shows_beside_given_force(term)
     }
 }
