@@ -12,7 +12,7 @@ use crate::kept::{Kept, LeftOut, MOST, repeated};
 use crate::layouts::Layout;
 use crate::mapping::{Mapping, column_channel, regressor_channel};
 use crate::pick::{Pick, Said};
-use crate::role::{self, Role};
+use crate::role::{self, ColumnRole};
 use crate::table::Table;
 
 /// Largest value in SI that any channel may have.
@@ -116,12 +116,12 @@ fn kept<'a>(
     let columns: BTreeSet<&str> = picks.iter().flat_map(Pick::columns).chain(beside).collect();
     let kept = Kept::of(table, &columns, path)?;
     let missing = kept.left_out();
-    let of = |role: Role| picks.iter().find(|pick| pick.role == role);
-    let Some(time) = of(Role::Time) else {
+    let of = |role: ColumnRole| picks.iter().find(|pick| pick.role == role);
+    let Some(time) = of(ColumnRole::Time) else {
         return Ok((kept, LeftOut { missing, repeated: 0 }));
     };
     let values = time.values(&kept, path)?;
-    let segment = of(Role::Segment).map(|pick| pick.values(&kept, path)).transpose()?;
+    let segment = of(ColumnRole::Segment).map(|pick| pick.values(&kept, path)).transpose()?;
     if values.len() != kept.len() {
         return Ok((kept, LeftOut { missing, repeated: 0 }));
     }
@@ -163,7 +163,7 @@ fn extras(
 fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>, DataError> {
     let mut picks = Vec::new();
     for facts in role::ALL {
-        let counted = facts.role == Role::Time
+        let counted = facts.role == ColumnRole::Time
             && mapping.interval_s.is_some()
             && mapping.time.column.is_none();
         if !counted {
@@ -175,11 +175,11 @@ fn picks(path: &Path, table: &dyn Table, mapping: &Mapping) -> Result<Vec<Pick>,
 
 /// Unit of a channel: that of the axis, or V or A where the force is one.
 fn unit_of(pick: &Pick, picks: &[Pick], rotary: bool) -> &'static str {
-    let force = picks.iter().find(|other| other.role == Role::Force);
+    let force = picks.iter().find(|other| other.role == ColumnRole::Force);
     let electrical = match pick.role {
-        Role::Force => pick.electrical(),
+        ColumnRole::Force => pick.electrical(),
         // What says no unit of its own is in that of the force.
-        Role::ModelForce => force.and_then(Pick::electrical),
+        ColumnRole::ModelForce => force.and_then(Pick::electrical),
         _ => None,
     };
     electrical.unwrap_or_else(|| unit(pick.role, rotary))
@@ -187,8 +187,10 @@ fn unit_of(pick: &Pick, picks: &[Pick], rotary: bool) -> &'static str {
 
 /// Refuses a model's force in another kind of unit than the force's.
 fn same_effort(picks: &[Pick]) -> Result<(), Problem> {
-    let of = |role: Role| picks.iter().find(|pick| pick.role == role);
-    let (Some(force), Some(model)) = (of(Role::Force), of(Role::ModelForce)) else { return Ok(()) };
+    let of = |role: ColumnRole| picks.iter().find(|pick| pick.role == role);
+    let (Some(force), Some(model)) = (of(ColumnRole::Force), of(ColumnRole::ModelForce)) else {
+        return Ok(());
+    };
     let (there, here) = (force.electrical(), model.electrical());
     let says_nothing = matches!(model.said, Said::Nothing | Said::Rotary) && here.is_none();
     if there == here || (there.is_some() && says_nothing) {
@@ -199,7 +201,7 @@ fn same_effort(picks: &[Pick]) -> Result<(), Problem> {
     Err(Problem::WrongUnit { role: "model_force", unit, known: vec![name(there)] })
 }
 
-fn unit(role: Role, rotary: bool) -> &'static str {
+fn unit(role: ColumnRole, rotary: bool) -> &'static str {
     let facts = role.facts();
     if rotary { facts.rotary.si() } else { facts.linear.si() }
 }
@@ -237,9 +239,9 @@ fn recording(
     for pick in picks {
         let values = pick.values(table, path)?;
         match pick.role {
-            Role::Time => time = Some(values),
-            Role::Segment => segment = Some(whole(&values, pick, table, path)?),
-            Role::Enabled => enabled = Some(values),
+            ColumnRole::Time => time = Some(values),
+            ColumnRole::Segment => segment = Some(whole(&values, pick, table, path)?),
+            ColumnRole::Enabled => enabled = Some(values),
             role => {
                 let unit = unit_of(pick, picks, rotary);
                 check_size(&values, unit, pick, table, path)?;

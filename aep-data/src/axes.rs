@@ -14,7 +14,7 @@ use crate::assemble::{Loaded, assemble};
 use crate::error::{DataError, Problem};
 use crate::header::Header;
 use crate::mapping::{Mapping, Source};
-use crate::role::Role;
+use crate::role::ColumnRole;
 use crate::{open, several, unit};
 
 /// What stands for the name of an axis in a flag.
@@ -22,13 +22,13 @@ pub const PLACE: &str = "{}";
 /// Most words of a name that name a joint: `left_upper_arm`.
 const MOST_WORDS: usize = 3;
 /// Roles that each axis has columns of its own for.
-const ROLES: [Role; 6] = [
-    Role::Force,
-    Role::Position,
-    Role::Velocity,
-    Role::Reference,
-    Role::Temperature,
-    Role::Enabled,
+const ROLES: [ColumnRole; 6] = [
+    ColumnRole::Force,
+    ColumnRole::Position,
+    ColumnRole::Velocity,
+    ColumnRole::Reference,
+    ColumnRole::Temperature,
+    ColumnRole::Enabled,
 ];
 
 /// Which axes are wanted.
@@ -124,7 +124,7 @@ fn axes(names: &[String], mapping: &Mapping) -> (Vec<Found>, Vec<String>) {
         return (each.collect(), Vec::new());
     }
     let mut keys: Vec<String> = Vec::new();
-    let own: Vec<(Role, String, &String)> = ROLES
+    let own: Vec<(ColumnRole, String, &String)> = ROLES
         .iter()
         .filter(|role| mapping.source(**role).column.is_none())
         .flat_map(|role| {
@@ -153,7 +153,7 @@ fn axes(names: &[String], mapping: &Mapping) -> (Vec<Found>, Vec<String>) {
                 source.column = Some((*name).clone());
             }
         }
-        let has = |role: Role| {
+        let has = |role: ColumnRole| {
             let column = all.source(role).column.as_deref();
             // A name of a column that is not there; what a formula lacks is told when it is read.
             column.is_some_and(|column| {
@@ -161,7 +161,7 @@ fn axes(names: &[String], mapping: &Mapping) -> (Vec<Found>, Vec<String>) {
                     || names.iter().any(|name| name == column)
             })
         };
-        match (has(Role::Force), has(Role::Position) || has(Role::Velocity)) {
+        match (has(ColumnRole::Force), has(ColumnRole::Position) || has(ColumnRole::Velocity)) {
             (true, true) => found.push(Found { name: key, mapping: all }),
             (false, true) => without_force.push(key),
             _ => {}
@@ -170,17 +170,17 @@ fn axes(names: &[String], mapping: &Mapping) -> (Vec<Found>, Vec<String>) {
     (found, without_force)
 }
 
-fn source_of(mapping: &mut Mapping, role: Role) -> &mut Source {
+fn source_of(mapping: &mut Mapping, role: ColumnRole) -> &mut Source {
     match role {
-        Role::Time => &mut mapping.time,
-        Role::Force => &mut mapping.force,
-        Role::Position => &mut mapping.position,
-        Role::Velocity => &mut mapping.velocity,
-        Role::Reference => &mut mapping.reference,
-        Role::Segment => &mut mapping.segment,
-        Role::Temperature => &mut mapping.temperature,
-        Role::Enabled => &mut mapping.enabled,
-        Role::ModelForce => &mut mapping.model_force,
+        ColumnRole::Time => &mut mapping.time,
+        ColumnRole::Force => &mut mapping.force,
+        ColumnRole::Position => &mut mapping.position,
+        ColumnRole::Velocity => &mut mapping.velocity,
+        ColumnRole::Reference => &mut mapping.reference,
+        ColumnRole::Segment => &mut mapping.segment,
+        ColumnRole::Temperature => &mut mapping.temperature,
+        ColumnRole::Enabled => &mut mapping.enabled,
+        ColumnRole::ModelForce => &mut mapping.model_force,
     }
 }
 
@@ -208,7 +208,7 @@ fn matched(pattern: &str, names: &[String]) -> Vec<String> {
 }
 
 /// The joint that a column of `role` belongs to: what is left of its name beside a name of the role and a unit.
-fn key(role: Role, name: &str) -> Option<String> {
+fn key(role: ColumnRole, name: &str) -> Option<String> {
     let is = |header: &Header<'_>| {
         role.facts().aliases.contains(&header.base.as_str())
             && header.unit.is_none_or(|unit| role.accepts(unit.quantity))

@@ -1,6 +1,6 @@
 //! What the name of a column says: which quantity, in which unit.
 
-use crate::role::{Facts, Role};
+use crate::role::{ColumnRole, Facts};
 use crate::unit::{self, Unit};
 
 /// The name of a column, taken apart.
@@ -31,13 +31,13 @@ impl<'a> Header<'a> {
         }
     }
 
-    fn suits(&self, role: Role) -> bool {
+    fn suits(&self, role: ColumnRole) -> bool {
         self.unit.is_none_or(|unit| role.accepts(unit.quantity))
     }
 }
 
 /// The column among `names` that holds `role`, by the names it is known under.
-pub(crate) fn recognise(role: Role, names: &[String]) -> Option<&String> {
+pub(crate) fn recognise(role: ColumnRole, names: &[String]) -> Option<&String> {
     let headers: Vec<Header> = names.iter().map(|name| Header::parse(name)).collect();
     role.facts().aliases.iter().find_map(|alias| {
         let index =
@@ -47,7 +47,7 @@ pub(crate) fn recognise(role: Role, names: &[String]) -> Option<&String> {
 }
 
 /// A column that is called like `role` but ends in something that is no unit: `force_foo`.
-pub(crate) fn unit_unknown(role: Role, names: &[String]) -> Option<(&str, &str)> {
+pub(crate) fn unit_unknown(role: ColumnRole, names: &[String]) -> Option<(&str, &str)> {
     names.iter().find_map(|name| ending(role.facts(), name).map(|unit| (name.as_str(), unit)))
 }
 
@@ -99,18 +99,18 @@ mod tests {
     #[test]
     fn the_best_name_wins_and_a_wrong_unit_disqualifies() {
         let columns = names(&["t_s", "x_ref_m", "x_mm", "position_V", "tau_Nm"]);
-        assert_eq!(recognise(Role::Position, &columns).unwrap(), "x_mm");
-        assert_eq!(recognise(Role::Reference, &columns).unwrap(), "x_ref_m");
-        assert_eq!(recognise(Role::Force, &columns).unwrap(), "tau_Nm");
-        assert_eq!(recognise(Role::Velocity, &columns), None);
+        assert_eq!(recognise(ColumnRole::Position, &columns).unwrap(), "x_mm");
+        assert_eq!(recognise(ColumnRole::Reference, &columns).unwrap(), "x_ref_m");
+        assert_eq!(recognise(ColumnRole::Force, &columns).unwrap(), "tau_Nm");
+        assert_eq!(recognise(ColumnRole::Velocity, &columns), None);
     }
 
     #[test]
     fn an_unknown_unit_is_noticed() {
         assert_eq!(
-            unit_unknown(Role::Force, &names(&["t", "force_foo"])),
+            unit_unknown(ColumnRole::Force, &names(&["t", "force_foo"])),
             Some(("force_foo", "foo"))
         );
-        assert_eq!(unit_unknown(Role::Force, &names(&["t", "x_foo"])), None);
+        assert_eq!(unit_unknown(ColumnRole::Force, &names(&["t", "x_foo"])), None);
     }
 }

@@ -67,7 +67,7 @@ pub use layouts::{LAYOUTS, Layout};
 pub use mapping::{Mapping, Source, column_channel, hold_name, parse_hold, regressor_channel};
 pub use part::{Part, part};
 pub use reference::{ReferencePath, read_reference};
-pub use role::{ALL as ROLES, Facts, Role};
+pub use role::{ALL as ROLES, ColumnRole, Facts};
 pub use save::{SaveError, save, save_with};
 pub use series::{Format, Values, save_series};
 pub use several::read_all;

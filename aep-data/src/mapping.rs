@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
 
 use crate::error::{DataError, Problem};
-use crate::role::Role;
+use crate::role::ColumnRole;
 
 /// Where the values of one quantity come from. `column * unit * gain` is the value in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,17 +91,17 @@ pub struct Mapping {
 
 impl Mapping {
     /// The source of a role.
-    pub fn source(&self, role: Role) -> &Source {
+    pub fn source(&self, role: ColumnRole) -> &Source {
         match role {
-            Role::Time => &self.time,
-            Role::Force => &self.force,
-            Role::Position => &self.position,
-            Role::Velocity => &self.velocity,
-            Role::Reference => &self.reference,
-            Role::Segment => &self.segment,
-            Role::Temperature => &self.temperature,
-            Role::Enabled => &self.enabled,
-            Role::ModelForce => &self.model_force,
+            ColumnRole::Time => &self.time,
+            ColumnRole::Force => &self.force,
+            ColumnRole::Position => &self.position,
+            ColumnRole::Velocity => &self.velocity,
+            ColumnRole::Reference => &self.reference,
+            ColumnRole::Segment => &self.segment,
+            ColumnRole::Temperature => &self.temperature,
+            ColumnRole::Enabled => &self.enabled,
+            ColumnRole::ModelForce => &self.model_force,
         }
     }
 

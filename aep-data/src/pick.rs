@@ -6,9 +6,9 @@ use crate::error::{DataError, Problem};
 use crate::expression::Expression;
 use crate::header::{Header, recognise, unit_unknown};
 use crate::mapping::Source;
-use crate::role::Role;
+use crate::role::ColumnRole;
 use crate::table::Table;
-use crate::unit::{self, Quantity, Unit};
+use crate::unit::{self, Dimension, Unit};
 
 /// The unit of a quantity, as far as the file says it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub(crate) enum Said {
 /// Where a quantity comes from.
 #[derive(Clone, Debug)]
 pub(crate) struct Pick {
-    pub role: Role,
+    pub role: ColumnRole,
     /// Column, product or formula, as it stands in the file.
     pub expression: Expression,
     pub said: Said,
@@ -36,7 +36,7 @@ pub(crate) struct Pick {
 impl Pick {
     /// Finds the source of `role` in `table`; nothing where it is not there and nobody asked for it.
     pub fn find(
-        role: Role,
+        role: ColumnRole,
         source: &Source,
         table: &dyn Table,
         path: &Path,
@@ -92,13 +92,20 @@ impl Pick {
     }
 }
 
-fn no_column(role: Role, source: &Source, table: &dyn Table, path: &Path) -> Result<(), DataError> {
+fn no_column(
+    role: ColumnRole,
+    source: &Source,
+    table: &dyn Table,
+    path: &Path,
+) -> Result<(), DataError> {
     if !role.is_required() && source.gain.is_none() && source.unit.is_none() {
         return Ok(());
     }
     let name = role.facts().name;
     let names = table.names();
-    if let Some(column) = recognise(Role::Velocity, &names).filter(|_| role == Role::Position) {
+    if let Some(column) =
+        recognise(ColumnRole::Velocity, &names).filter(|_| role == ColumnRole::Position)
+    {
         return Err(DataError::new(path, Problem::VelocityOnly { column: column.clone() }));
     }
     let Some((column, unit)) = unit_unknown(role, &names) else {
@@ -107,7 +114,7 @@ fn no_column(role: Role, source: &Source, table: &dyn Table, path: &Path) -> Res
     Err(DataError::new(path, unknown_unit(role, unit)).in_column(column))
 }
 
-fn checked_gain(role: Role, source: &Source) -> Result<f64, Problem> {
+fn checked_gain(role: ColumnRole, source: &Source) -> Result<f64, Problem> {
     let gain = source.gain.unwrap_or(1.0);
     if gain.is_finite() && gain != 0.0 {
         return Ok(gain);
@@ -116,7 +123,7 @@ fn checked_gain(role: Role, source: &Source) -> Result<f64, Problem> {
     Err(Problem::BadNumber { what, value: gain, must: "finite and not zero" })
 }
 
-fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Problem> {
+fn said(role: ColumnRole, source: &Source, column: Option<&str>) -> Result<Said, Problem> {
     if let Some(text) = &source.unit {
         let unit = unit::find(text).ok_or_else(|| unknown_unit(role, text))?;
         if is_effort(role) && unit::electrical(unit).is_some() {
@@ -135,7 +142,7 @@ fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Probl
         (Some(unit), _) if is_effort(role) && unit::electrical(unit).is_some() => {
             Ok(Said::Electrical(unit))
         }
-        (Some(unit), _) if unit.quantity == Quantity::Raw => {
+        (Some(unit), _) if unit.quantity == Dimension::Raw => {
             Err(Problem::NeedsGain { role: role.facts().name, unit: unit.name.to_owned() })
         }
         (Some(unit), _) => accepted(role, unit).map(Said::Unit),
@@ -146,11 +153,11 @@ fn said(role: Role, source: &Source, column: Option<&str>) -> Result<Said, Probl
 }
 
 /// Whether a voltage or a current may stand in its place.
-fn is_effort(role: Role) -> bool {
-    matches!(role, Role::Force | Role::ModelForce)
+fn is_effort(role: ColumnRole) -> bool {
+    matches!(role, ColumnRole::Force | ColumnRole::ModelForce)
 }
 
-fn known_units(role: Role) -> Vec<&'static str> {
+fn known_units(role: ColumnRole) -> Vec<&'static str> {
     let facts = role.facts();
     let mut names = unit::names(facts.linear);
     if facts.rotary != facts.linear {
@@ -159,7 +166,7 @@ fn known_units(role: Role) -> Vec<&'static str> {
     names
 }
 
-fn unknown_unit(role: Role, text: &str) -> Problem {
+fn unknown_unit(role: ColumnRole, text: &str) -> Problem {
     Problem::UnknownUnit {
         role: role.facts().name,
         unit: text.to_owned(),
@@ -168,7 +175,7 @@ fn unknown_unit(role: Role, text: &str) -> Problem {
     }
 }
 
-fn accepted(role: Role, unit: &'static Unit) -> Result<&'static Unit, Problem> {
+fn accepted(role: ColumnRole, unit: &'static Unit) -> Result<&'static Unit, Problem> {
     if role.accepts(unit.quantity) {
         return Ok(unit);
     }

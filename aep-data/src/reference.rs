@@ -6,7 +6,7 @@ use crate::csv_table::CsvTable;
 use crate::error::{DataError, Problem};
 use crate::mapping::Source;
 use crate::pick::Pick;
-use crate::role::Role;
+use crate::role::ColumnRole;
 use crate::table::Table;
 use crate::unreadable;
 
@@ -30,10 +30,10 @@ pub fn read_reference(path: &Path) -> Result<ReferencePath, DataError> {
     let table = CsvTable::parse(path, &bytes)?;
     let find = |role| Pick::find(role, &Source::default(), &table, path);
     let missing = |role| DataError::new(path, table.missing(role, None));
-    let time = find(Role::Time)?.ok_or_else(|| missing("time"))?;
-    let position = match find(Role::Reference)? {
+    let time = find(ColumnRole::Time)?.ok_or_else(|| missing("time"))?;
+    let position = match find(ColumnRole::Reference)? {
         Some(pick) => pick,
-        None => find(Role::Position)?.ok_or_else(|| missing("reference"))?,
+        None => find(ColumnRole::Position)?.ok_or_else(|| missing("reference"))?,
     };
     let rotary = position.is_rotary();
     let (time, position) = (time.values(&table, path)?, position.values(&table, path)?);

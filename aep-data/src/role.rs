@@ -1,10 +1,10 @@
 //! The quantities a recording can hold, and the names under which files carry them.
 
-use crate::unit::Quantity;
+use crate::unit::Dimension;
 
 /// A quantity that the analysis knows how to use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum ColumnRole {
     /// Time of the sample.
     Time,
     /// Force or torque of the drive.
@@ -29,17 +29,17 @@ pub enum Role {
 #[derive(Debug)]
 pub struct Facts {
     /// The role.
-    pub role: Role,
+    pub role: ColumnRole,
     /// Name of the channel, of the flag (`--force`) and of the field of `DATA.toml`.
     pub name: &'static str,
     /// The header of a linear axis, e.g. `force_N`.
     pub header: &'static str,
     /// The header of a rotary axis.
     pub rotary_header: &'static str,
-    /// Quantity on a linear axis.
-    pub linear: Quantity,
-    /// Quantity on a rotary axis.
-    pub rotary: Quantity,
+    /// Dimension on a linear axis.
+    pub linear: Dimension,
+    /// Dimension on a rotary axis.
+    pub rotary: Dimension,
     /// Names without unit under which it is recognised, lower case, best first.
     pub aliases: &'static [&'static str],
     /// Aliases that only a rotary axis uses.
@@ -49,52 +49,52 @@ pub struct Facts {
 /// Every role, time first.
 pub const ALL: &[Facts] = &[
     Facts {
-        role: Role::Time,
+        role: ColumnRole::Time,
         name: "time",
         header: "time_s",
         rotary_header: "time_s",
-        linear: Quantity::Time,
-        rotary: Quantity::Time,
+        linear: Dimension::Time,
+        rotary: Dimension::Time,
         aliases: &["time", "t", "timestamp", "zeit"],
         rotary_aliases: &[],
     },
     Facts {
-        role: Role::Force,
+        role: ColumnRole::Force,
         name: "force",
         header: "force_N",
         rotary_header: "torque_Nm",
-        linear: Quantity::Force,
-        rotary: Quantity::Torque,
+        linear: Dimension::Force,
+        rotary: Dimension::Torque,
         aliases: &["force", "f", "torque", "tau", "motor_force", "motor_torque"],
         rotary_aliases: &["torque", "tau", "motor_torque"],
     },
     Facts {
-        role: Role::Position,
+        role: ColumnRole::Position,
         name: "position",
         header: "position_m",
         rotary_header: "angle_rad",
-        linear: Quantity::Length,
-        rotary: Quantity::Angle,
+        linear: Dimension::Length,
+        rotary: Dimension::Angle,
         aliases: &["position", "pos", "angle", "x", "q", "theta", "phi", "displacement"],
         rotary_aliases: &["angle", "theta", "phi"],
     },
     Facts {
-        role: Role::Velocity,
+        role: ColumnRole::Velocity,
         name: "velocity",
         header: "velocity_m_s",
         rotary_header: "angular_velocity_rad_s",
-        linear: Quantity::Speed,
-        rotary: Quantity::AngularSpeed,
+        linear: Dimension::Speed,
+        rotary: Dimension::AngularSpeed,
         aliases: &["velocity", "vel", "angular_velocity", "speed", "v", "qd", "dq", "omega"],
         rotary_aliases: &["angular_velocity", "omega"],
     },
     Facts {
-        role: Role::Reference,
+        role: ColumnRole::Reference,
         name: "reference",
         header: "reference_m",
         rotary_header: "reference_rad",
-        linear: Quantity::Length,
-        rotary: Quantity::Angle,
+        linear: Dimension::Length,
+        rotary: Dimension::Angle,
         aliases: &[
             "reference",
             "ref",
@@ -108,49 +108,49 @@ pub const ALL: &[Facts] = &[
         rotary_aliases: &[],
     },
     Facts {
-        role: Role::Segment,
+        role: ColumnRole::Segment,
         name: "segment",
         header: "segment",
         rotary_header: "segment",
-        linear: Quantity::Number,
-        rotary: Quantity::Number,
+        linear: Dimension::Number,
+        rotary: Dimension::Number,
         aliases: &["segment", "run", "block"],
         rotary_aliases: &[],
     },
     Facts {
-        role: Role::Temperature,
+        role: ColumnRole::Temperature,
         name: "temperature",
         header: "temperature_C",
         rotary_header: "temperature_C",
-        linear: Quantity::Temperature,
-        rotary: Quantity::Temperature,
+        linear: Dimension::Temperature,
+        rotary: Dimension::Temperature,
         aliases: &["temperature", "temp"],
         rotary_aliases: &[],
     },
     Facts {
-        role: Role::Enabled,
+        role: ColumnRole::Enabled,
         name: "enabled",
         header: "enabled",
         rotary_header: "enabled",
-        linear: Quantity::Number,
-        rotary: Quantity::Number,
+        linear: Dimension::Number,
+        rotary: Dimension::Number,
         aliases: &["enabled", "torque_enable", "torque_enabled", "drive_enabled"],
         rotary_aliases: &[],
     },
     Facts {
-        role: Role::ModelForce,
+        role: ColumnRole::ModelForce,
         name: "model_force",
         header: "model_force_N",
         rotary_header: "model_torque_Nm",
-        linear: Quantity::Force,
-        rotary: Quantity::Torque,
+        linear: Dimension::Force,
+        rotary: Dimension::Torque,
         // Never taken unasked: with it a discovery answers another question.
         aliases: &[],
         rotary_aliases: &[],
     },
 ];
 
-impl Role {
+impl ColumnRole {
     /// What is known of it.
     pub fn facts(self) -> &'static Facts {
         // The table is in the order of the variants; a test holds it to that.
@@ -163,7 +163,7 @@ impl Role {
     }
 
     /// The quantities its unit may measure.
-    pub fn accepts(self, quantity: Quantity) -> bool {
+    pub fn accepts(self, quantity: Dimension) -> bool {
         quantity == self.facts().linear || quantity == self.facts().rotary
     }
 }

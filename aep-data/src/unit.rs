@@ -2,7 +2,7 @@
 
 /// What a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum Dimension {
     /// Seconds.
     Time,
     /// Newtons.
@@ -25,7 +25,7 @@ pub enum Quantity {
     Raw,
 }
 
-impl Quantity {
+impl Dimension {
     /// The SI unit the recording carries.
     pub fn si(self) -> &'static str {
         match self {
@@ -48,14 +48,14 @@ pub struct Unit {
     /// How it is written in a header or in `DATA.toml`.
     pub name: &'static str,
     /// What it measures.
-    pub quantity: Quantity,
+    pub quantity: Dimension,
     /// One of it in SI.
     pub factor: f64,
     /// Its zero in SI (only temperatures have one).
     pub shift: f64,
 }
 
-const fn unit(name: &'static str, quantity: Quantity, factor: f64) -> Unit {
+const fn unit(name: &'static str, quantity: Dimension, factor: f64) -> Unit {
     Unit { name, quantity, factor, shift: 0.0 }
 }
 
@@ -66,52 +66,52 @@ const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
 /// Every unit that is understood. Case matters: `mN` is not `MN`.
 pub const UNITS: &[Unit] = &[
-    unit("s", Quantity::Time, 1.0),
-    unit("ms", Quantity::Time, 1e-3),
-    unit("us", Quantity::Time, 1e-6),
-    unit("ns", Quantity::Time, 1e-9),
-    unit("min", Quantity::Time, 60.0),
-    unit("N", Quantity::Force, 1.0),
-    unit("mN", Quantity::Force, 1e-3),
-    unit("kN", Quantity::Force, 1e3),
-    unit("kgf", Quantity::Force, KILOGRAM_FORCE),
-    unit("gf", Quantity::Force, KILOGRAM_FORCE * 1e-3),
-    unit("lbf", Quantity::Force, POUND_FORCE),
-    unit("Nm", Quantity::Torque, 1.0),
-    unit("mNm", Quantity::Torque, 1e-3),
-    unit("Ncm", Quantity::Torque, 1e-2),
-    unit("Nmm", Quantity::Torque, 1e-3),
-    unit("kNm", Quantity::Torque, 1e3),
-    unit("m", Quantity::Length, 1.0),
-    unit("cm", Quantity::Length, 1e-2),
-    unit("mm", Quantity::Length, 1e-3),
-    unit("um", Quantity::Length, 1e-6),
-    unit("nm", Quantity::Length, 1e-9),
-    unit("in", Quantity::Length, 0.0254),
-    unit("rad", Quantity::Angle, 1.0),
-    unit("mrad", Quantity::Angle, 1e-3),
-    unit("urad", Quantity::Angle, 1e-6),
-    unit("deg", Quantity::Angle, DEGREE),
-    unit("rev", Quantity::Angle, TURN),
-    unit("m/s", Quantity::Speed, 1.0),
-    unit("cm/s", Quantity::Speed, 1e-2),
-    unit("mm/s", Quantity::Speed, 1e-3),
-    unit("um/s", Quantity::Speed, 1e-6),
-    unit("m/min", Quantity::Speed, 1.0 / 60.0),
-    unit("mm/min", Quantity::Speed, 1e-3 / 60.0),
-    unit("rad/s", Quantity::AngularSpeed, 1.0),
-    unit("mrad/s", Quantity::AngularSpeed, 1e-3),
-    unit("deg/s", Quantity::AngularSpeed, DEGREE),
-    unit("rev/s", Quantity::AngularSpeed, TURN),
-    unit("rpm", Quantity::AngularSpeed, TURN / 60.0),
-    unit("C", Quantity::Temperature, 1.0),
-    Unit { name: "K", quantity: Quantity::Temperature, factor: 1.0, shift: -273.15 },
-    unit("V", Quantity::Raw, 1.0),
-    unit("mV", Quantity::Raw, 1e-3),
-    unit("A", Quantity::Raw, 1.0),
-    unit("mA", Quantity::Raw, 1e-3),
-    unit("counts", Quantity::Raw, 1.0),
-    unit("bar", Quantity::Raw, 1.0),
+    unit("s", Dimension::Time, 1.0),
+    unit("ms", Dimension::Time, 1e-3),
+    unit("us", Dimension::Time, 1e-6),
+    unit("ns", Dimension::Time, 1e-9),
+    unit("min", Dimension::Time, 60.0),
+    unit("N", Dimension::Force, 1.0),
+    unit("mN", Dimension::Force, 1e-3),
+    unit("kN", Dimension::Force, 1e3),
+    unit("kgf", Dimension::Force, KILOGRAM_FORCE),
+    unit("gf", Dimension::Force, KILOGRAM_FORCE * 1e-3),
+    unit("lbf", Dimension::Force, POUND_FORCE),
+    unit("Nm", Dimension::Torque, 1.0),
+    unit("mNm", Dimension::Torque, 1e-3),
+    unit("Ncm", Dimension::Torque, 1e-2),
+    unit("Nmm", Dimension::Torque, 1e-3),
+    unit("kNm", Dimension::Torque, 1e3),
+    unit("m", Dimension::Length, 1.0),
+    unit("cm", Dimension::Length, 1e-2),
+    unit("mm", Dimension::Length, 1e-3),
+    unit("um", Dimension::Length, 1e-6),
+    unit("nm", Dimension::Length, 1e-9),
+    unit("in", Dimension::Length, 0.0254),
+    unit("rad", Dimension::Angle, 1.0),
+    unit("mrad", Dimension::Angle, 1e-3),
+    unit("urad", Dimension::Angle, 1e-6),
+    unit("deg", Dimension::Angle, DEGREE),
+    unit("rev", Dimension::Angle, TURN),
+    unit("m/s", Dimension::Speed, 1.0),
+    unit("cm/s", Dimension::Speed, 1e-2),
+    unit("mm/s", Dimension::Speed, 1e-3),
+    unit("um/s", Dimension::Speed, 1e-6),
+    unit("m/min", Dimension::Speed, 1.0 / 60.0),
+    unit("mm/min", Dimension::Speed, 1e-3 / 60.0),
+    unit("rad/s", Dimension::AngularSpeed, 1.0),
+    unit("mrad/s", Dimension::AngularSpeed, 1e-3),
+    unit("deg/s", Dimension::AngularSpeed, DEGREE),
+    unit("rev/s", Dimension::AngularSpeed, TURN),
+    unit("rpm", Dimension::AngularSpeed, TURN / 60.0),
+    unit("C", Dimension::Temperature, 1.0),
+    Unit { name: "K", quantity: Dimension::Temperature, factor: 1.0, shift: -273.15 },
+    unit("V", Dimension::Raw, 1.0),
+    unit("mV", Dimension::Raw, 1e-3),
+    unit("A", Dimension::Raw, 1.0),
+    unit("mA", Dimension::Raw, 1e-3),
+    unit("counts", Dimension::Raw, 1.0),
+    unit("bar", Dimension::Raw, 1.0),
 ];
 
 /// Other ways to write a unit, after blanks, dots and underscores are gone.
@@ -162,7 +162,7 @@ pub fn nearest(text: &str) -> Option<&'static str> {
 }
 
 /// The names of all units of `quantity`.
-pub fn names(quantity: Quantity) -> Vec<&'static str> {
+pub fn names(quantity: Dimension) -> Vec<&'static str> {
     UNITS.iter().filter(|unit| unit.quantity == quantity).map(|unit| unit.name).collect()
 }
 
@@ -176,8 +176,8 @@ mod tests {
             assert_eq!(find(text).map(|unit| unit.name), Some("mm/s"), "{text}");
         }
         assert_eq!(find("\u{b5}m").map(|unit| unit.factor), Some(1e-6));
-        assert_eq!(find("N*m").map(|unit| unit.quantity), Some(Quantity::Torque));
-        assert_eq!(find("N\u{b7}m").map(|unit| unit.quantity), Some(Quantity::Torque));
+        assert_eq!(find("N*m").map(|unit| unit.quantity), Some(Dimension::Torque));
+        assert_eq!(find("N\u{b7}m").map(|unit| unit.quantity), Some(Dimension::Torque));
     }
 
     #[test]

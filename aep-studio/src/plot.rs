@@ -9,7 +9,7 @@ use crate::html::{concat, escape};
 mod scale;
 mod thin;
 
-use scale::Scale;
+use scale::PlotScale;
 
 const WIDTH: f64 = 520.0;
 const HEIGHT: f64 = 300.0;
@@ -42,9 +42,9 @@ pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
     let whole: Vec<&Curve> = plot.curves.iter().filter(|curve| has_points(curve)).collect();
     let curves: Vec<Curve> = whole.iter().map(|curve| cleaned(curve)).collect();
     let edges: Vec<Curve> = bands.iter().flat_map(edges).collect();
-    let x = Scale::fitting(curves.iter().flat_map(|c| &c.x), LEFT, WIDTH - RIGHT)?;
+    let x = PlotScale::fitting(curves.iter().flat_map(|c| &c.x), LEFT, WIDTH - RIGHT)?;
     let both = curves.iter().chain(&edges).flat_map(|c| &c.y);
-    let y = Scale::of(both, HEIGHT - BOTTOM, TOP)?;
+    let y = PlotScale::of(both, HEIGHT - BOTTOM, TOP)?;
     let areas: String = edges.chunks(2).map(|pair| area(pair, &curves, &x, &y)).collect();
     let drawn: String =
         whole.iter().enumerate().map(|(k, c)| curve(c, colour(c, k), &x, &y)).collect();
@@ -73,7 +73,7 @@ fn edges(band: &Band) -> Vec<Curve> {
 }
 
 /// The area between two lines, in the colour of the curve with their label.
-fn area(pair: &[Curve], curves: &[Curve], x: &Scale, y: &Scale) -> String {
+fn area(pair: &[Curve], curves: &[Curve], x: &PlotScale, y: &PlotScale) -> String {
     let [low, high] = pair else { return String::new() };
     let index = curves.iter().position(|curve| curve.label == low.label).unwrap_or(0);
     let place = |curve: &Curve| -> Vec<String> {
@@ -120,7 +120,7 @@ fn colour(curve: &Curve, index: usize) -> &'static str {
 }
 
 /// A line is interrupted where a value is no number.
-fn curve(whole: &Curve, class: &str, x: &Scale, y: &Scale) -> String {
+fn curve(whole: &Curve, class: &str, x: &PlotScale, y: &PlotScale) -> String {
     let clean = cleaned(whole);
     let forward = clean.x.windows(2).all(|pair| pair[1] >= pair[0]) && clean.x.len() > 1;
     let at = |(a, b): (f64, f64)| (x.at(a), y.at(b));
@@ -151,7 +151,7 @@ fn legend(curves: &[Curve]) -> String {
     format!("<div class=legend>{entries}</div>")
 }
 
-fn axes(plot: &Plot, x: &Scale, y: &Scale) -> String {
+fn axes(plot: &Plot, x: &PlotScale, y: &PlotScale) -> String {
     let (bottom, right) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
     // Writing to a string cannot fail.
     let mut svg = String::new();

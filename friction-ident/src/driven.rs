@@ -9,7 +9,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use crate::effects::{
-    Effect, Leg, Motion, Onset, Parameters, Role, Shown, Slot, Smooth, broadcast,
+    Effect, Leg, Motion, Onset, ParameterRole, Parameters, Shown, Slot, Smooth, broadcast,
 };
 use crate::model::{MASS, Model, Term, address};
 use crate::simd::sign;
@@ -209,7 +209,7 @@ pub fn columns_along(model: &Model, motion: &MeasuredMotion<'_>) -> Columns {
     for term in model.terms() {
         let about = term.effect().about();
         for (k, parameter) in about.parameters.iter().enumerate() {
-            if parameter.role == Role::Amplitude {
+            if parameter.role == ParameterRole::Amplitude {
                 addresses.push(address(term.effect(), parameter.name));
                 columns.push(walk.column(term, k));
             }

@@ -9,14 +9,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use aep_core::{
-    Batch, Budget, ConfigError, Domain, Driver, Method, Outcome, Problem, RunError,
-    Scale as SearchScale, Start as SearchStart,
+    Batch, Budget, ConfigError, Domain, Driver, Method, Outcome, Problem, RunError, Scale,
+    Start as SearchStart,
 };
 use missing_physics::{Recording, RecordingError};
 use rayon::prelude::*;
 
 use crate::closed_loop::Pd;
-use crate::effects::{Effect, Role, Scale};
+use crate::effects::{Effect, ParameterRole};
 use crate::model::{MASS, Model, ModelError};
 use crate::simulator::SimulationError;
 use crate::windows::{WindowError, WindowOptions};
@@ -90,7 +90,7 @@ pub fn all_free(model: &Model) -> Vec<Free> {
         };
         let (low, high) = parameter.range(model.axis());
         let scale = parameter.scale;
-        (parameter.role != Role::Fixed).then_some(Free { address, low, high, scale })
+        (parameter.role != ParameterRole::Fixed).then_some(Free { address, low, high, scale })
     };
     model.addresses().into_iter().filter_map(tabled).collect()
 }
@@ -177,10 +177,7 @@ impl<'a> Identification<'a> {
             Ok(addresses.iter().position(|address| *address == free.address).unwrap_or(0))
         };
         let places = free.iter().map(place).collect::<Result<_, _>>()?;
-        let scales = free.iter().map(|free| match free.scale {
-            Scale::Linear => SearchScale::Linear,
-            Scale::Log => SearchScale::Log,
-        });
+        let scales = free.iter().map(|free| free.scale);
         let domain = Domain::new(
             free.iter().map(|free| free.low).collect(),
             free.iter().map(|free| free.high).collect(),

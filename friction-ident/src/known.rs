@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use missing_physics::{Parameter, Term};
+use missing_physics::{Term, TermParameter};
 use serde::{Deserialize, Serialize};
 
 /// What is known of parameters, by address (`mass`, `viscous.F_v`).
@@ -117,7 +117,7 @@ impl Known {
     }
 }
 
-fn key(term: &str, parameter: &Parameter) -> String {
+fn key(term: &str, parameter: &TermParameter) -> String {
     if term == parameter.name { term.to_owned() } else { format!("{term}.{}", parameter.name) }
 }
 
@@ -135,7 +135,7 @@ fn place(terms: &[Term], address: &str) -> Result<(usize, usize), KnownError> {
     Err(KnownError::Unknown { address: address.to_owned(), hint })
 }
 
-fn check(parameter: &Parameter, address: &str, value: f64) -> Result<(), KnownError> {
+fn check(parameter: &TermParameter, address: &str, value: f64) -> Result<(), KnownError> {
     let need = if !value.is_finite() {
         "it must be finite"
     } else if (parameter.scale == aep_core::Scale::Log || parameter.lower > 0.0) && value <= 0.0 {
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     fn terms() -> Vec<Term> {
-        let parameter = |name: &str, lower: f64, scale| Parameter {
+        let parameter = |name: &str, lower: f64, scale| TermParameter {
             name: name.into(),
             unit: "1".into(),
             role: Role::Amplitude,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::axis::{Axis, Effort, Quantity};
 use crate::effects::beside::is_beside;
-use crate::effects::{Effect, Library, Parameter, Role, Slot, UnknownEffect};
+use crate::effects::{Effect, Library, Parameter, ParameterRole, Slot, UnknownEffect};
 use crate::known::Known;
 
 mod file;
@@ -94,7 +94,7 @@ impl Term {
     pub(crate) fn with_unit_amplitude(&self, k: usize) -> Self {
         let mut term = self.clone();
         for (index, parameter) in self.effect.about().parameters.iter().enumerate() {
-            if parameter.role == Role::Amplitude {
+            if parameter.role == ParameterRole::Amplitude {
                 term.values[index] = f64::from(u8::from(index == k));
             }
         }

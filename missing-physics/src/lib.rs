@@ -36,7 +36,7 @@ mod task;
 pub use confirm::confirm;
 pub use discover::{discover, likely, suggest};
 pub use family::{
-    Coordinate, Fitted, FnFamily, ModelFamily, Parameter, Quantity, Regime, Role, Term,
+    ComparedQuantity, Coordinate, Fitted, FnFamily, ModelFamily, Regime, Role, Term, TermParameter,
 };
 pub use measurement::{Channel, Hold, Recording, RecordingError};
 pub use predicted::prediction_fit;

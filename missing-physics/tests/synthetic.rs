@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use missing_physics::report::{Remains, Verdict};
 use missing_physics::{
-    Coordinate, Discovery, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Settings, Term,
-    confirm, discover,
+    ComparedQuantity, Coordinate, Discovery, Fitted, ModelFamily, Regime, Role, Settings, Term,
+    TermParameter, confirm, discover,
 };
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -39,7 +39,7 @@ struct Family {
 }
 
 fn term(name: &str, always: bool, lower: f64) -> Term {
-    let parameter = Parameter {
+    let parameter = TermParameter {
         name: "size".into(),
         unit: "V".into(),
         role: Role::Amplitude,
@@ -115,8 +115,8 @@ impl ModelFamily for Family {
     fn terms(&self) -> &[Term] {
         &self.terms
     }
-    fn quantity(&self) -> Quantity {
-        Quantity { name: "signal".into(), unit: "V".into() }
+    fn quantity(&self) -> ComparedQuantity {
+        ComparedQuantity { name: "signal".into(), unit: "V".into() }
     }
     fn time(&self) -> &[f64] {
         &self.time

@@ -235,11 +235,11 @@ impl Kind {
         };
         let rotary = axis == Axis::Rotary;
         match self {
-            Self::Length if rotary => si(text, unit::Quantity::Angle),
-            Self::Length => si(text, unit::Quantity::Length),
-            Self::Speed if rotary => si(text, unit::Quantity::AngularSpeed),
-            Self::Speed => si(text, unit::Quantity::Speed),
-            Self::Time => si(text, unit::Quantity::Time),
+            Self::Length if rotary => si(text, unit::Dimension::Angle),
+            Self::Length => si(text, unit::Dimension::Length),
+            Self::Speed if rotary => si(text, unit::Dimension::AngularSpeed),
+            Self::Speed => si(text, unit::Dimension::Speed),
+            Self::Time => si(text, unit::Dimension::Time),
             Self::Frequency => match text {
                 "Hz" => Some(1.0),
                 "mHz" => Some(1e-3),

@@ -1,7 +1,7 @@
 //! An axis of a plot: from values to places, and the ticks between.
 
 /// Where the values of an axis lie on the page.
-pub(crate) struct Scale {
+pub(crate) struct PlotScale {
     low: f64,
     high: f64,
     start: f64,
@@ -23,7 +23,7 @@ const SPAN: f64 = 300.0;
 /// They crowd where half of them lie below this share of the largest.
 const CROWDED: f64 = 0.1;
 
-impl Scale {
+impl PlotScale {
     /// An axis over all `values` from the place `start` to `end`; nothing without values.
     pub fn of<'a>(values: impl Iterator<Item = &'a f64>, start: f64, end: f64) -> Option<Self> {
         let (low, high) = range(values)?;
@@ -35,7 +35,7 @@ impl Scale {
         Some(Self { low, high, start, end, kind: Kind::Linear { step, exponent } })
     }
 
-    /// Like [`Scale::of`], but in decades where a linear axis would crowd most of the values into a
+    /// Like [`PlotScale::of`], but in decades where a linear axis would crowd most of the values into a
     /// corner, as it does with speeds and distances that begin near nothing.
     pub fn fitting<'a>(
         values: impl Iterator<Item = &'a f64> + Clone,
@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     fn texts(low: f64, high: f64) -> (Vec<String>, String) {
-        let scale = Scale::of([low, high].iter(), 0.0, 100.0).unwrap();
+        let scale = PlotScale::of([low, high].iter(), 0.0, 100.0).unwrap();
         (scale.ticks().into_iter().map(|tick| tick.1).collect(), scale.label("x / m"))
     }
 
@@ -171,22 +171,22 @@ mod tests {
     #[test]
     fn values_crowded_near_nothing_are_drawn_in_decades() {
         let speeds = [1e-4, 2e-4, 1e-3, 2e-3, 5e-3, 0.1, 0.3];
-        let scale = Scale::fitting(speeds.iter(), 0.0, 100.0).unwrap();
+        let scale = PlotScale::fitting(speeds.iter(), 0.0, 100.0).unwrap();
         let ticks: Vec<String> = scale.ticks().into_iter().map(|tick| tick.1).collect();
         assert_eq!(ticks, ["10⁻⁴", "10⁻³", "10⁻²", "10⁻¹"]);
         assert!(scale.at(1e-3) > 25.0 && scale.zero().is_none());
         // Evenly spread, or with a zero, they are not.
         for even in [vec![1e-4, 0.1, 0.2, 0.3], vec![0.0, 1e-4, 1e-3, 1e-3, 0.3]] {
-            let scale = Scale::fitting(even.iter(), 0.0, 100.0).unwrap();
+            let scale = PlotScale::fitting(even.iter(), 0.0, 100.0).unwrap();
             assert!(scale.ticks().iter().all(|tick| !tick.1.contains('⁻')));
         }
     }
 
     #[test]
     fn a_single_value_has_room_around_it() {
-        let scale = Scale::of([3.0].iter(), 0.0, 100.0).unwrap();
+        let scale = PlotScale::of([3.0].iter(), 0.0, 100.0).unwrap();
         assert!((scale.at(3.0) - 50.0).abs() < 1e-9);
-        assert!(Scale::of(std::iter::empty(), 0.0, 1.0).is_none());
-        assert!(Scale::of([-f64::MAX, f64::MAX].iter(), 0.0, 1.0).is_none());
+        assert!(PlotScale::of(std::iter::empty(), 0.0, 1.0).is_none());
+        assert!(PlotScale::of([-f64::MAX, f64::MAX].iter(), 0.0, 1.0).is_none());
     }
 }

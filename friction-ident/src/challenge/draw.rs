@@ -5,7 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::{ChallengeError, Hide, Level, STROKE};
 use crate::axis::Axis;
-use crate::effects::{ALL, Effect, Extent, Role, find};
+use crate::effects::{ALL, Effect, Extent, ParameterRole, find};
 use crate::model::{Model, ModelError, address};
 
 pub(super) struct Draw {
@@ -69,15 +69,17 @@ impl Draw {
             let size = self.log_uniform(0.5, 2.0);
             let sign = if parameter.low < 0.0 && self.random.random() { -1.0 } else { 1.0 };
             let value = match (parameter.role, parameter.extent) {
-                (Role::Amplitude, _) => sign * self.amplitude(effect, parameter.name),
-                (Role::Shape, Some(Extent::StrokeMiddle)) => self.random.random_range(0.0..STROKE),
-                (Role::Shape, _) => match effect.drawn_from(parameter.name) {
+                (ParameterRole::Amplitude, _) => sign * self.amplitude(effect, parameter.name),
+                (ParameterRole::Shape, Some(Extent::StrokeMiddle)) => {
+                    self.random.random_range(0.0..STROKE)
+                }
+                (ParameterRole::Shape, _) => match effect.drawn_from(parameter.name) {
                     Some(sold) => sold[self.random.random_range(0..sold.len())],
                     None => size * parameter.default,
                 },
-                (Role::Fixed, Some(Extent::StrokeBegin)) => 0.0,
-                (Role::Fixed, Some(Extent::StrokeEnd)) => STROKE,
-                (Role::Fixed, _) => parameter.default,
+                (ParameterRole::Fixed, Some(Extent::StrokeBegin)) => 0.0,
+                (ParameterRole::Fixed, Some(Extent::StrokeEnd)) => STROKE,
+                (ParameterRole::Fixed, _) => parameter.default,
             };
             model.set(&address(effect, parameter.name), value)?;
         }

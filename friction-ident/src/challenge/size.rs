@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::{ChallengeError, ENCODER, FORCE_NOISE, SAMPLE_TIME, record};
 use crate::closed_loop::Run;
 use crate::driven::{MeasuredMotion, columns_along, force_along};
-use crate::effects::{Effect, Role, Slot};
+use crate::effects::{Effect, ParameterRole, Slot};
 use crate::model::{Model, address};
 use crate::signal::derivative;
 
@@ -85,8 +85,8 @@ struct Knob {
 impl Knob {
     fn of(effect: &dyn Effect) -> Self {
         let about = effect.about();
-        let amplitude = about.parameters.iter().any(|p| p.role == Role::Amplitude);
-        let first = about.parameters.iter().find(|p| p.role == Role::Shape);
+        let amplitude = about.parameters.iter().any(|p| p.role == ParameterRole::Amplitude);
+        let first = about.parameters.iter().find(|p| p.role == ParameterRole::Shape);
         match first {
             Some(shape) if about.is_limit_of_drive(shape) => {
                 Self { shape: Some(shape.name), low: 20.0, high: 1e-2 }
@@ -101,7 +101,7 @@ impl Knob {
         for parameter in effect.about().parameters {
             let turns = match self.shape {
                 Some(name) => name == parameter.name,
-                None => parameter.role == Role::Amplitude,
+                None => parameter.role == ParameterRole::Amplitude,
             };
             if turns {
                 let at = address(effect, parameter.name);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::effects::Role;
+use crate::effects::ParameterRole;
 use crate::model::{MASS, Model};
 use crate::reference::Reference;
 
@@ -110,7 +110,7 @@ fn parameters(model: &Model, settings: Settings) -> Result<Vec<String>, ControlE
     let left_out = left_out.left_out();
     let uses = |address: &String| {
         let effect = address.rsplit_once('.').map_or("", |(effect, _)| effect);
-        let fixed = model.parameter(address).is_none_or(|p| p.role == Role::Fixed);
+        let fixed = model.parameter(address).is_none_or(|p| p.role == ParameterRole::Fixed);
         address != MASS && !fixed && !left_out.iter().any(|l| l.effect == effect)
     };
     let nonzero = |address: &String| model.get(address).is_ok_and(|value| value != 0.0);
@@ -123,7 +123,8 @@ fn parameters(model: &Model, settings: Settings) -> Result<Vec<String>, ControlE
 fn changed(model: &Model, parameter: &str, factor: f64) -> Model {
     let mut changed = model.clone();
     for address in model.addresses() {
-        let amplitude = model.parameter(&address).is_some_and(|p| p.role == Role::Amplitude);
+        let amplitude =
+            model.parameter(&address).is_some_and(|p| p.role == ParameterRole::Amplitude);
         let concerned = address == parameter || parameter == ALL && amplitude;
         if let (true, Ok(value)) = (concerned, model.get(&address)) {
             // A positive factor keeps every value acceptable.

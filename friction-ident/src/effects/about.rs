@@ -1,27 +1,19 @@
 //! What is known of an effect besides its code: name, equation, parameters, fingerprint, source.
 
+pub use aep_core::Scale;
 use serde::Deserialize;
 
 use crate::axis::{Axis, Quantity};
 
 /// How a parameter enters the force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum ParameterRole {
     /// The effect is linear in it and absent where all its amplitudes are 0.
     Amplitude,
     /// Anything else that is fitted: a velocity, a period, a stiffness, a lag.
     Shape,
     /// Not fitted: taken from the data or from the machine's drawing (a stroke, a pole pitch).
     Fixed,
-}
-
-/// On which scale a parameter is searched.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Uniform between the bounds.
-    Linear,
-    /// Uniform in the logarithm; the value must be positive.
-    Log,
 }
 
 /// What of a recording a parameter is taken from.
@@ -53,7 +45,7 @@ pub struct Parameter {
     /// What it measures.
     pub quantity: Quantity,
     /// How it enters the force.
-    pub role: Role,
+    pub role: ParameterRole,
     /// Smallest value of a search. 0 for a friction level, a stiffness, a lag.
     pub low: f64,
     /// Largest value of a search.
@@ -75,7 +67,7 @@ impl Parameter {
         high: f64,
         default: f64,
     ) -> Self {
-        let (role, scale) = (Role::Amplitude, Scale::Linear);
+        let (role, scale) = (ParameterRole::Amplitude, Scale::Linear);
         Self { name, meaning, quantity, role, low: -high, high, scale, default, extent: None }
     }
 
@@ -87,7 +79,7 @@ impl Parameter {
         high: f64,
         default: f64,
     ) -> Self {
-        let (role, scale) = (Role::Amplitude, Scale::Linear);
+        let (role, scale) = (ParameterRole::Amplitude, Scale::Linear);
         Self { name, meaning, quantity, role, low: 0.0, high, scale, default, extent: None }
     }
 
@@ -99,7 +91,7 @@ impl Parameter {
         (low, high): (f64, f64),
         default: f64,
     ) -> Self {
-        let (role, scale) = (Role::Shape, Scale::Log);
+        let (role, scale) = (ParameterRole::Shape, Scale::Log);
         Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
     }
 
@@ -111,7 +103,7 @@ impl Parameter {
         (low, high): (f64, f64),
         default: f64,
     ) -> Self {
-        let (role, scale) = (Role::Fixed, Scale::Linear);
+        let (role, scale) = (ParameterRole::Fixed, Scale::Linear);
         Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
     }
 
@@ -210,7 +202,7 @@ impl About {
     /// Whether `parameter` is the largest force that a drive gives: the lower it is, the more the effect does.
     pub fn is_limit_of_drive(&self, parameter: &Parameter) -> bool {
         parameter.quantity == Quantity::Force
-            && parameter.role == Role::Shape
+            && parameter.role == ParameterRole::Shape
             && self.acts_on(Slot::Drive)
     }
 

@@ -5,7 +5,7 @@
 use missing_physics::Recording;
 
 use super::signal::Signal;
-use super::{About, Effect, Motion, Parameter, Parameters, Role, Scale, Slot, Smooth};
+use super::{About, Effect, Motion, Parameter, ParameterRole, Parameters, Scale, Slot, Smooth};
 use crate::axis::Quantity;
 
 /// Channel of a recording that holds the force that another model gives.
@@ -50,7 +50,7 @@ static GAIN: About = About {
         name: "dk",
         meaning: "share by which the given force is too small",
         quantity: Quantity::One,
-        role: Role::Amplitude,
+        role: ParameterRole::Amplitude,
         low: -0.9,
         high: 9.0,
         scale: Scale::Linear,
@@ -71,7 +71,7 @@ static FORCE: About = About {
             name: "gain",
             meaning: "factor on the given force",
             quantity: Quantity::One,
-            role: Role::Fixed,
+            role: ParameterRole::Fixed,
             low: 0.0,
             high: 10.0,
             scale: Scale::Linear,

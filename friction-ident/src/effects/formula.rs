@@ -20,8 +20,8 @@ use missing_physics::Recording;
 use serde::Deserialize;
 
 use super::{
-    About, Effect, Extent, Motion, Parameter, Parameters, Role, Scale, Signal, Slot, Smooth,
-    UnknownEffect,
+    About, Effect, Extent, Motion, Parameter, ParameterRole, Parameters, Scale, Signal, Slot,
+    Smooth, UnknownEffect,
 };
 use crate::axis::Quantity;
 
@@ -232,9 +232,9 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
         meaning: keep(&p.meaning),
         quantity,
         role: match p.from {
-            Some(_) => Role::Fixed,
-            None if p.linear => Role::Amplitude,
-            None => Role::Shape,
+            Some(_) => ParameterRole::Fixed,
+            None if p.linear => ParameterRole::Amplitude,
+            None => ParameterRole::Shape,
         },
         low: p.low,
         high: p.high,
@@ -294,12 +294,18 @@ impl Formula {
         let scaled = |by: f64| -> f64 {
             let p: Vec<f64> = table
                 .iter()
-                .map(|p| if p.role == Role::Amplitude { by * (p.default + 0.1) } else { p.default })
+                .map(|p| {
+                    if p.role == ParameterRole::Amplitude {
+                        by * (p.default + 0.1)
+                    } else {
+                        p.default
+                    }
+                })
                 .collect();
             self.evaluate(&p, at, &columns, &mut Work::default())
         };
         let (once, twice) = (scaled(1.0), scaled(2.0));
-        match table.iter().find(|p| p.role == Role::Amplitude) {
+        match table.iter().find(|p| p.role == ParameterRole::Amplitude) {
             Some(p) if (twice - 2.0 * once).abs() > 1e-9 * once.abs() => {
                 Err(FormulaError::Parameter {
                     name: p.name.to_owned(),

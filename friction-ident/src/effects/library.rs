@@ -84,7 +84,7 @@ impl Library {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Role, Scale, find};
+    use super::super::{ParameterRole, Scale, find};
     use super::*;
 
     #[test]
@@ -119,7 +119,11 @@ mod tests {
                 assert!(p.low < p.high, "{}.{}", about.name, p.name);
                 assert!(p.low <= p.default && p.default <= p.high, "{}.{}", about.name, p.name);
                 assert!(p.accepts(p.low) && p.accepts(p.default), "{}.{}", about.name, p.name);
-                assert!(p.role != Role::Amplitude || p.scale == Scale::Linear, "{}", p.name);
+                assert!(
+                    p.role != ParameterRole::Amplitude || p.scale == Scale::Linear,
+                    "{}",
+                    p.name
+                );
             }
         }
     }

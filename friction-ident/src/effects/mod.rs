@@ -57,7 +57,7 @@ use missing_physics::Recording;
 
 use crate::axis::Axis;
 
-pub use about::{About, Extent, Parameter, Role, Scale, Slot};
+pub use about::{About, Extent, Parameter, ParameterRole, Scale, Slot};
 pub use apart::Apart;
 pub use as_found::{AsFound, Refused};
 pub use c_law::CLaw;

@@ -4,7 +4,7 @@ use missing_physics::Recording;
 
 use super::beside::Tabled;
 use super::formula::{FormulaError, check_name};
-use super::{About, Effect, Parameter, Role, Scale, Signal, Slot};
+use super::{About, Effect, Parameter, ParameterRole, Scale, Signal, Slot};
 use crate::axis::Quantity;
 
 /// What regressors name as their source.
@@ -42,7 +42,7 @@ fn about(name: &'static str, most: f64, typical: f64) -> About {
             name: "k",
             meaning: "factor on the regressor",
             quantity: Quantity::One,
-            role: Role::Amplitude,
+            role: ParameterRole::Amplitude,
             low: -most,
             high: most,
             scale: Scale::Linear,

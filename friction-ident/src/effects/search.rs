@@ -1,6 +1,6 @@
 //! How an effect is looked for: what its shapes are tried at, and whether it repeats along the stroke.
 
-use super::{Effect, Motion, Parameters, Role, Slot, Smooth, broadcast};
+use super::{Effect, Motion, ParameterRole, Parameters, Slot, Smooth, broadcast};
 use crate::axis::Quantity;
 
 /// Force per unit of each amplitude of a law, from the sine and the cosine of `2 pi x/period` at each position.
@@ -59,7 +59,8 @@ pub fn periodic(effect: &dyn Effect) -> Option<Periodic> {
 
 fn repeats_by_law(effect: &dyn Effect) -> Option<Periodic> {
     let about = effect.about();
-    let mut shapes = about.parameters.iter().enumerate().filter(|(_, p)| p.role == Role::Shape);
+    let mut shapes =
+        about.parameters.iter().enumerate().filter(|(_, p)| p.role == ParameterRole::Shape);
     let (Some((place, period)), None) = (shapes.next(), shapes.next()) else { return None };
     let is_force = matches!(about.slots, [Slot::SmoothForce]);
     if !is_force || period.quantity != Quantity::Length || period.low <= 0.0 {

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use aep_core::Scale;
 use missing_physics::family::{Ahead, Columns, Own, Rival, Series, Trial, trials};
 use missing_physics::report::{Fault, Refusal};
-use missing_physics::{Fitted, ModelFamily, Parameter, Recording, Role};
+use missing_physics::{Fitted, ModelFamily, Recording, Role, TermParameter};
 
 use super::FrictionFamily;
 use crate::effects::free::{Free, RIVALS};
@@ -119,7 +119,7 @@ impl FrictionFamily {
             let short = |shape: &Vec<f64>| shape[0] <= longest;
             return self.shapes(term).into_iter().step_by(2).filter(short).collect();
         }
-        let shapes: Vec<&Parameter> =
+        let shapes: Vec<&TermParameter> =
             about.parameters.iter().filter(|p| p.role == Role::Shape).collect();
         let usual: &[usize] = match shapes.len() {
             1 => &[12],
@@ -273,7 +273,7 @@ pub(super) fn rivals(family: &FrictionFamily) -> Vec<Rival> {
 }
 
 /// `count` values within the limits, evenly on the parameter's scale; one alone is where a search starts.
-fn inner(parameter: &Parameter, count: usize) -> Vec<f64> {
+fn inner(parameter: &TermParameter, count: usize) -> Vec<f64> {
     if count == 1 {
         return vec![parameter.start];
     }

@@ -302,7 +302,7 @@ fn hump(form: &str, height: Option<f64>, speed: Option<f64>, exponent: Option<f6
 
 #[cfg(test)]
 mod tests {
-    use missing_physics::{Channel, Parameter, Recording};
+    use missing_physics::{Channel, Recording, TermParameter};
 
     use super::*;
     use crate::family::Options;
@@ -325,7 +325,7 @@ mod tests {
     /// Why a second body of 10 kg behind 20 kg is none, with these values in the place of sensible ones.
     fn said(family: &FrictionFamily, name: &str, values: &[(&str, f64)]) -> Option<Refusal> {
         let term = family.terms.iter().position(|term| term.name == name).unwrap();
-        let value = |p: &Parameter| {
+        let value = |p: &TermParameter| {
             let given = values.iter().find(|(name, _)| *name == p.name).map(|(_, value)| *value);
             given.unwrap_or(if p.name == "m_L" { 10.0 } else { p.start })
         };

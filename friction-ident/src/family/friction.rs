@@ -90,7 +90,7 @@ impl FrictionFamily {
         let estimates = fit::uncertainty::estimates(self, &found, &weights);
         let alone = |(k, (term, parameter)): (
             usize,
-            (&missing_physics::Term, &missing_physics::Parameter),
+            (&missing_physics::Term, &missing_physics::TermParameter),
         )| {
             let key = term.key(parameter);
             let is_in = derivatives.iter().any(|by| by[k] != 0.0);

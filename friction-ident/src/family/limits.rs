@@ -1,7 +1,7 @@
 //! Bounds, starts and trial values of parameters, from what the recording can show.
 
 use aep_core::Scale;
-use missing_physics::{Parameter, Role, Term};
+use missing_physics::{Role, Term, TermParameter};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Effort, Quantity};
@@ -67,7 +67,7 @@ impl Limits {
     /// The mass: part of every model.
     pub fn mass(&self) -> Term {
         let typical = self.force.rms / self.acceleration.rms;
-        let parameter = Parameter {
+        let parameter = TermParameter {
             name: "mass".into(),
             unit: self.effort.unit(self.axis, Quantity::Mass).into(),
             role: Role::Amplitude,
@@ -88,7 +88,7 @@ impl Limits {
     /// How much earlier than the recorded force a given one is: part of every model beside it.
     pub fn timing(&self) -> Term {
         let most = super::given::MOST_SHIFT * self.interval;
-        let parameter = Parameter {
+        let parameter = TermParameter {
             name: "shift".into(),
             unit: "s".into(),
             role: Role::Amplitude,
@@ -98,7 +98,7 @@ impl Limits {
             start: 0.5 * self.interval,
         };
         let square = self.interval * self.interval;
-        let smoothing = Parameter {
+        let smoothing = TermParameter {
             name: "smoothing".into(),
             unit: "s^2".into(),
             // Less than none is noise; it must be possible, so that none is no limit.
@@ -128,7 +128,7 @@ impl Limits {
         }
     }
 
-    fn parameter(&self, parameter: &effects::Parameter, about: &About) -> Parameter {
+    fn parameter(&self, parameter: &effects::Parameter, about: &About) -> TermParameter {
         let amplitude = is_amplitude(about, parameter);
         let (lower, upper, start) = if amplitude {
             self.amplitude(parameter)
@@ -137,16 +137,13 @@ impl Limits {
         } else {
             self.shape(parameter)
         };
-        Parameter {
+        TermParameter {
             name: parameter.name.into(),
             unit: self.effort.unit(self.axis, parameter.quantity).into(),
             role: if amplitude { Role::Amplitude } else { Role::Shape },
             lower,
             upper,
-            scale: match parameter.scale {
-                effects::Scale::Linear => Scale::Linear,
-                effects::Scale::Log => Scale::Log,
-            },
+            scale: parameter.scale,
             start,
         }
     }
@@ -198,7 +195,7 @@ impl Limits {
             Quantity::Time => (2.0 * self.interval, f64::INFINITY),
             _ => (low, high),
         };
-        let linear = parameter.scale == effects::Scale::Linear;
+        let linear = parameter.scale == Scale::Linear;
         let lower = if linear { low } else { from.max(low.min(to)) };
         let upper = to.min(high).max(lower * 1.01);
         let middle = if linear { 0.5 * (lower + upper) } else { (lower * upper).sqrt() };
@@ -211,14 +208,14 @@ impl Limits {
 /// Parameters that this comparison takes from the recording: those that are fixed by nature (a
 /// stroke), and the neutral position of a spring, which only shifts the offset.
 pub fn is_fixed(parameter: &effects::Parameter) -> bool {
-    parameter.role == effects::Role::Fixed || parameter.extent.is_some()
+    parameter.role == effects::ParameterRole::Fixed || parameter.extent.is_some()
 }
 
 /// A lag or a delay of 0 is none, and a small one acts in proportion: in a comparison of forces it
 /// is an amplitude, like the sizes that a law is linear in.
 fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
-    let linear = parameter.scale == effects::Scale::Linear;
-    parameter.role == effects::Role::Amplitude
+    let linear = parameter.scale == Scale::Linear;
+    parameter.role == effects::ParameterRole::Amplitude
         || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
 }
 
@@ -258,7 +255,7 @@ pub fn trials(effect: &dyn Effect, term: &Term) -> Option<Vec<Vec<f64>>> {
     }))
 }
 
-fn line(trials: Trials, parameter: &Parameter) -> Vec<f64> {
+fn line(trials: Trials, parameter: &TermParameter) -> Vec<f64> {
     match trials {
         Trials::Spread(count) => missing_physics::family::shapes::spread(parameter, count),
         Trials::At(values) => values.to_vec(),

@@ -32,7 +32,7 @@ use missing_physics::family::{Ahead, FullRate, Generic, sizes};
 use missing_physics::report::{Course, NamedError, Plot, Remark};
 use missing_physics::statistics::basis::{dot, gram, solve};
 use missing_physics::statistics::split::Split;
-use missing_physics::{Coordinate, Fitted, ModelFamily, Quantity, Recording, Regime, Term};
+use missing_physics::{ComparedQuantity, Coordinate, Fitted, ModelFamily, Recording, Regime, Term};
 
 use rayon::prelude::*;
 
@@ -481,14 +481,14 @@ impl ModelFamily for FrictionFamily {
         &self.terms
     }
 
-    fn quantity(&self) -> Quantity {
+    fn quantity(&self) -> ComparedQuantity {
         let (name, unit) = match (self.effort, self.axis) {
             (Effort::Volt, _) => ("voltage", "V"),
             (Effort::Ampere, _) => ("current", "A"),
             (Effort::Si, Axis::Linear) => ("force", "N"),
             (Effort::Si, Axis::Rotary) => ("torque", "Nm"),
         };
-        Quantity { name: name.into(), unit: unit.into() }
+        ComparedQuantity { name: name.into(), unit: unit.into() }
     }
 
     fn time(&self) -> &[f64] {

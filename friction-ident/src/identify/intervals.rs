@@ -14,12 +14,12 @@
 //! parameters that make up for it. Then every value is allowed at which the error is no larger than what
 //! a finer step of integration changes, and no velocity below one count a sample has a lower limit.
 
+use aep_core::Scale;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::{Free, Identification};
 use crate::axis::Quantity;
-use crate::effects::Scale;
 
 /// Blocks within which errors may be correlated.
 const BLOCKS: usize = 20;

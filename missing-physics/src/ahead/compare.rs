@@ -8,7 +8,7 @@
 use super::fit::Normal;
 use super::node::Node;
 use super::{Ahead, scales, statistics};
-use crate::family::{Fitted, ModelFamily, Parameter, Role, Term};
+use crate::family::{Fitted, ModelFamily, Role, Term, TermParameter};
 use crate::statistics::basis::solve;
 
 /// Folds of interleaved pieces.
@@ -187,7 +187,7 @@ struct Shrunk {
 impl Shrunk {
     fn of<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Self {
         let parameters: Vec<_> = model.parameters(family).zip(&model.values).collect();
-        let counts = |term: &Term, p: &Parameter| !term.always && p.role == Role::Amplitude;
+        let counts = |term: &Term, p: &TermParameter| !term.always && p.role == Role::Amplitude;
         let each = parameters.iter().map(|((term, p), _)| {
             let kin = parameters.iter().filter(|((other, q), _)| {
                 counts(other, q) && other.name == term.name && q.unit == p.unit

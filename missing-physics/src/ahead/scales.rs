@@ -2,7 +2,7 @@
 
 use aep_core::Scale;
 
-use crate::family::{Fitted, ModelFamily, Parameter};
+use crate::family::{Fitted, ModelFamily, TermParameter};
 
 /// Size of an amplitude that counts as its scale, as a share of its typical size, where its value is less.
 const SHARE: f64 = 0.2;
@@ -18,7 +18,7 @@ const AT_LIMIT: f64 = 1e-3;
 /// A parameter, its value, and how it is moved.
 #[derive(Clone, Debug)]
 pub struct Moved {
-    parameter: Parameter,
+    parameter: TermParameter,
     value: f64,
     /// One unit of the fit, for a linear parameter.
     scale: f64,
@@ -34,7 +34,7 @@ pub fn of<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<Moved> {
 }
 
 impl Moved {
-    fn new(parameter: &Parameter, value: f64, always: bool) -> Self {
+    fn new(parameter: &TermParameter, value: f64, always: bool) -> Self {
         let typical = SHARE * parameter.start.abs();
         // What every model has is known (an inertia): its own size is its scale.
         let known = always && parameter.lower > 0.0;

@@ -12,7 +12,8 @@ use crate::report::Refusal;
 
 use super::{Ahead, Rival, Trial, trials};
 use crate::family::{
-    Coordinate, Fitted, ModelFamily, Parameter, Quantity, Regime, Role, Series, Term as About,
+    ComparedQuantity, Coordinate, Fitted, ModelFamily, Regime, Role, Series, Term as About,
+    TermParameter,
 };
 
 /// Samples and their distance, s.
@@ -90,8 +91,8 @@ pub struct Plant {
     pub lacks: Option<Series>,
 }
 
-fn about(name: &str, lower: f64, more: Option<Parameter>) -> About {
-    let size = Parameter {
+fn about(name: &str, lower: f64, more: Option<TermParameter>) -> About {
+    let size = TermParameter {
         name: "size".into(),
         unit: "V".into(),
         role: Role::Amplitude,
@@ -128,7 +129,7 @@ impl Plant {
             x = LEFT * x + target[k - 1];
             measured[k] = x + NOISE * noise;
         }
-        let frequency = Parameter {
+        let frequency = TermParameter {
             name: "omega".into(),
             unit: "rad/s".into(),
             role: Role::Shape,
@@ -137,7 +138,8 @@ impl Plant {
             scale: Scale::Log,
             start: 4.0,
         };
-        let bend = Parameter { name: "bend".into(), ..about("", -10.0, None).parameters.remove(0) };
+        let bend =
+            TermParameter { name: "bend".into(), ..about("", -10.0, None).parameters.remove(0) };
         let terms = vec![
             about("drive", 1e-3, None),
             about("wave", -10.0, None),
@@ -260,8 +262,8 @@ impl ModelFamily for Plant {
     fn terms(&self) -> &[About] {
         &self.terms
     }
-    fn quantity(&self) -> Quantity {
-        Quantity { name: "input".into(), unit: "V".into() }
+    fn quantity(&self) -> ComparedQuantity {
+        ComparedQuantity { name: "input".into(), unit: "V".into() }
     }
     fn time(&self) -> &[f64] {
         &self.time

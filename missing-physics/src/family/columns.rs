@@ -3,7 +3,7 @@
 use super::fitted::Fitted;
 use super::model_family::ModelFamily;
 use super::shapes::{amplitudes, assemble};
-use super::term::Parameter;
+use super::term::TermParameter;
 
 /// The default of [`ModelFamily::columns`]: differences of two predictions.
 pub fn columns<F: ModelFamily + ?Sized>(
@@ -34,6 +34,6 @@ pub fn columns<F: ModelFamily + ?Sized>(
 }
 
 /// A size of an amplitude that is neither nothing nor out of bounds.
-fn unit(parameter: &Parameter) -> f64 {
+fn unit(parameter: &TermParameter) -> f64 {
     if parameter.start == 0.0 { 1.0 } else { parameter.start }
 }

@@ -2,7 +2,7 @@
 
 /// What is compared: the predicted quantity.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Quantity {
+pub struct ComparedQuantity {
     /// Name, e.g. `force`.
     pub name: String,
     /// SI unit, e.g. `N`.

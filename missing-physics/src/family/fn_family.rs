@@ -1,6 +1,6 @@
 //! A family from a closure.
 
-use super::coordinate::{Coordinate, Quantity};
+use super::coordinate::{ComparedQuantity, Coordinate};
 use super::fitted::Fitted;
 use super::model_family::ModelFamily;
 use super::term::Term;
@@ -40,7 +40,7 @@ use super::term::Term;
 /// ```
 pub struct FnFamily<P> {
     terms: Vec<Term>,
-    quantity: Quantity,
+    quantity: ComparedQuantity,
     time: Vec<f64>,
     target: Vec<f64>,
     coordinates: Vec<Coordinate>,
@@ -74,14 +74,14 @@ impl<'a> Given<'a> {
 impl<P: Fn(&Given<'_>, &mut [f64]) + Sync> FnFamily<P> {
     /// From instants (s), what was measured at them, and what a model predicts there.
     pub fn new(terms: Vec<Term>, time: Vec<f64>, target: Vec<f64>, predict: P) -> Self {
-        let quantity = Quantity { name: "output".into(), unit: "1".into() };
+        let quantity = ComparedQuantity { name: "output".into(), unit: "1".into() };
         Self { terms, quantity, time, target, coordinates: Vec::new(), predict }
     }
 
     /// Says what is predicted, and its SI unit.
     #[must_use]
     pub fn predicting(mut self, name: &str, unit: &str) -> Self {
-        self.quantity = Quantity { name: name.into(), unit: unit.into() };
+        self.quantity = ComparedQuantity { name: name.into(), unit: unit.into() };
         self
     }
 
@@ -99,7 +99,7 @@ impl<P: Fn(&Given<'_>, &mut [f64]) + Sync> ModelFamily for FnFamily<P> {
         &self.terms
     }
 
-    fn quantity(&self) -> Quantity {
+    fn quantity(&self) -> ComparedQuantity {
         self.quantity.clone()
     }
 

@@ -19,7 +19,7 @@ mod trials;
 
 pub use ahead::{Ahead, Columns, Rival, Trial};
 pub use columns::columns;
-pub use coordinate::{Coordinate, Quantity, Regime};
+pub use coordinate::{ComparedQuantity, Coordinate, Regime};
 pub use fitted::Fitted;
 pub use fn_family::{FnFamily, Given};
 pub use full_rate::FullRate;
@@ -29,5 +29,5 @@ pub use own::Own;
 pub use series::Series;
 pub(crate) use sizes::detection_limit;
 pub use sizes::sizes;
-pub use term::{Parameter, Role, Term};
+pub use term::{Role, Term, TermParameter};
 pub use trials::trials;

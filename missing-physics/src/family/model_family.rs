@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::ahead::Ahead;
 use super::columns::columns;
-use super::coordinate::{Coordinate, Quantity, Regime};
+use super::coordinate::{ComparedQuantity, Coordinate, Regime};
 use super::fitted::Fitted;
 use super::full_rate::FullRate;
 use super::generic::Generic;
@@ -74,8 +74,8 @@ pub trait ModelFamily: Sync {
     fn terms(&self) -> &[Term];
 
     /// What is predicted.
-    fn quantity(&self) -> Quantity {
-        Quantity { name: "output".into(), unit: "1".into() }
+    fn quantity(&self) -> ComparedQuantity {
+        ComparedQuantity { name: "output".into(), unit: "1".into() }
     }
 
     /// Instants of the grid, s.

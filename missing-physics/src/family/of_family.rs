@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::fitted::Fitted;
 use super::model_family::ModelFamily;
-use super::term::{Parameter, Term};
+use super::term::{Term, TermParameter};
 
 impl Fitted {
     /// This model without one of its terms.
@@ -31,7 +31,7 @@ impl Fitted {
     pub fn parameters<'a, F: ModelFamily + ?Sized>(
         &'a self,
         family: &'a F,
-    ) -> impl Iterator<Item = (&'a Term, &'a Parameter)> {
+    ) -> impl Iterator<Item = (&'a Term, &'a TermParameter)> {
         self.terms.iter().flat_map(|&index| {
             let term = &family.terms()[index];
             term.parameters.iter().map(move |parameter| (term, parameter))

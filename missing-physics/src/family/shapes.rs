@@ -2,14 +2,14 @@
 
 use aep_core::Scale;
 
-use super::term::{Parameter, Role, Term};
+use super::term::{Role, Term, TermParameter};
 
 /// Trials per shape parameter for a term with one, two and more of them.
 const TRIALS: [usize; 3] = [16, 8, 5];
 
 /// The product of one-dimensional grids over all shape parameters of `term`.
 pub fn grid(term: &Term) -> Vec<Vec<f64>> {
-    let shapes: Vec<&Parameter> =
+    let shapes: Vec<&TermParameter> =
         term.parameters.iter().filter(|p| p.role == Role::Shape).collect();
     let trials = TRIALS[shapes.len().saturating_sub(1).min(2)];
     shapes.iter().fold(vec![Vec::new()], |points, parameter| {
@@ -22,7 +22,7 @@ pub fn grid(term: &Term) -> Vec<Vec<f64>> {
 }
 
 /// `count` values from the lower to the upper limit, evenly on the parameter's scale.
-pub fn spread(parameter: &Parameter, count: usize) -> Vec<f64> {
+pub fn spread(parameter: &TermParameter, count: usize) -> Vec<f64> {
     let (lower, upper) = (parameter.lower, parameter.upper);
     (0..count)
         .map(|k| {
@@ -48,7 +48,7 @@ pub fn assemble(term: &Term, shape: &[f64], amplitude: &[f64]) -> Vec<f64> {
 }
 
 /// Number of columns of a term: its amplitudes, or one where it has none.
-pub fn amplitudes(term: &Term) -> Vec<&Parameter> {
+pub fn amplitudes(term: &Term) -> Vec<&TermParameter> {
     term.parameters.iter().filter(|parameter| parameter.role == Role::Amplitude).collect()
 }
 
@@ -56,8 +56,8 @@ pub fn amplitudes(term: &Term) -> Vec<&Parameter> {
 mod tests {
     use super::*;
 
-    fn parameter(role: Role) -> Parameter {
-        Parameter {
+    fn parameter(role: Role) -> TermParameter {
+        TermParameter {
             name: "p".into(),
             unit: "m".into(),
             role,

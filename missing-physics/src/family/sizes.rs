@@ -1,6 +1,6 @@
 //! The values of a term as numbers with names and units.
 
-use super::term::{Parameter, Role, Term};
+use super::term::{Role, Term, TermParameter};
 use crate::report::{DetectionLimit, NamedValue};
 
 /// The values of all parameters of a term.
@@ -12,7 +12,7 @@ pub fn sizes(term: &Term, values: &[f64]) -> Vec<NamedValue> {
 pub fn detection_limit(
     term: &Term,
     values: &[f64],
-    amplitude: &Parameter,
+    amplitude: &TermParameter,
     size: f64,
 ) -> DetectionLimit {
     let shapes = term.parameters.iter().zip(values).filter(|(p, _)| p.role == Role::Shape);
@@ -24,7 +24,7 @@ pub fn detection_limit(
     }
 }
 
-fn named(parameter: &Parameter, value: f64) -> NamedValue {
+fn named(parameter: &TermParameter, value: f64) -> NamedValue {
     NamedValue { name: parameter.name.clone(), value, unit: parameter.unit.clone() }
 }
 
@@ -34,7 +34,7 @@ mod tests {
     use aep_core::Scale;
 
     fn term() -> Term {
-        let parameter = |name: &str, unit: &str, role| Parameter {
+        let parameter = |name: &str, unit: &str, role| TermParameter {
             name: name.into(),
             unit: unit.into(),
             role,

@@ -13,7 +13,7 @@ pub enum Role {
 
 /// One parameter of a term. Its sign is physics: `lower = 0` says that it cannot be negative.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
+pub struct TermParameter {
     /// Name, e.g. `level`.
     pub name: String,
     /// SI unit, e.g. `N`.
@@ -40,7 +40,7 @@ pub struct Term {
     /// Its equation as text.
     pub equation: String,
     /// Its parameters, in the order in which values are given.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<TermParameter>,
     /// True where every model has it and it is no candidate (an inertia).
     pub always: bool,
 }
@@ -78,7 +78,7 @@ impl Term {
         start: f64,
     ) -> Self {
         let (name, unit) = (name.to_owned(), unit.to_owned());
-        self.parameters.push(Parameter { name, unit, role, lower, upper, scale, start });
+        self.parameters.push(TermParameter { name, unit, role, lower, upper, scale, start });
         self
     }
 
@@ -90,7 +90,7 @@ impl Term {
     }
 
     /// The key of a parameter in reports: `term.parameter`, or just the name where both are equal.
-    pub fn key(&self, parameter: &Parameter) -> String {
+    pub fn key(&self, parameter: &TermParameter) -> String {
         if self.name == parameter.name {
             return self.name.clone();
         }

@@ -7,7 +7,7 @@
 use aep_core::Scale;
 use rayon::prelude::*;
 
-use crate::family::{Fitted, ModelFamily, Parameter};
+use crate::family::{Fitted, ModelFamily, TermParameter};
 use crate::statistics::basis::{dot, gram, solve, weighed};
 
 const MAX_STEPS: usize = 25;
@@ -92,7 +92,7 @@ fn step<F: ModelFamily + ?Sized>(
     anchor: &[f64],
     damping: &mut f64,
 ) -> Option<Fit> {
-    let parameters: Vec<&Parameter> = fit.model.parameters(family).map(|(_, p)| p).collect();
+    let parameters: Vec<&TermParameter> = fit.model.parameters(family).map(|(_, p)| p).collect();
     let weigh = |column: &[f64]| weighed(column, weights);
     let columns: Vec<Vec<f64>> = fit.jacobian.iter().map(|column| weigh(column)).collect();
     let target = weigh(&fit.residual);
@@ -130,20 +130,20 @@ fn step<F: ModelFamily + ?Sized>(
 }
 
 /// How far a value is from `anchor`, on the parameter's own scale.
-fn away(parameter: &Parameter, value: f64, anchor: f64) -> f64 {
+fn away(parameter: &TermParameter, value: f64, anchor: f64) -> f64 {
     match parameter.scale {
         Scale::Linear => value - anchor,
         Scale::Log => (value / anchor).ln(),
     }
 }
 
-fn pushed_out(parameter: &Parameter, value: f64, moment: f64) -> bool {
+fn pushed_out(parameter: &TermParameter, value: f64, moment: f64) -> bool {
     (value <= parameter.lower && moment < 0.0) || (value >= parameter.upper && moment > 0.0)
 }
 
 /// A value after a step on its own scale, kept within bounds. A step on a logarithmic scale is at
 /// most a factor of three: farther away the linearisation says nothing.
-fn moved(parameter: &Parameter, value: f64, step: f64) -> f64 {
+fn moved(parameter: &TermParameter, value: f64, step: f64) -> f64 {
     let new = match parameter.scale {
         Scale::Linear => value + step,
         Scale::Log => value * step.clamp(-1.1, 1.1).exp(),
@@ -156,7 +156,7 @@ fn jacobian<F: ModelFamily + ?Sized>(
     model: &Fitted,
     prediction: &[f64],
 ) -> Vec<Vec<f64>> {
-    let parameters: Vec<&Parameter> = model.parameters(family).map(|(_, p)| p).collect();
+    let parameters: Vec<&TermParameter> = model.parameters(family).map(|(_, p)| p).collect();
     (0..parameters.len())
         .into_par_iter()
         .map(|k| {
@@ -169,7 +169,7 @@ fn jacobian<F: ModelFamily + ?Sized>(
 }
 
 /// The values with the k-th one moved inwards from the nearer bound, and the step on its scale.
-fn perturbed(parameter: &Parameter, values: &[f64], k: usize) -> (Vec<f64>, f64) {
+fn perturbed(parameter: &TermParameter, values: &[f64], k: usize) -> (Vec<f64>, f64) {
     let mut moved = values.to_vec();
     let step = match parameter.scale {
         Scale::Log => {

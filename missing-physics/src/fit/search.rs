@@ -8,7 +8,7 @@
 use aep_core::{Aep, Budget, Domain, Driver, FnProblem, Method, Scale, Start};
 
 use crate::family::shapes::{amplitudes, assemble};
-use crate::family::{Fitted, ModelFamily, Parameter, Role};
+use crate::family::{Fitted, ModelFamily, Role, TermParameter};
 use crate::fit::{self, Fit, weighted_square};
 use crate::statistics::basis::{Basis, constrained, dot, gram, weighed};
 
@@ -58,8 +58,8 @@ pub fn identify_by<F: ModelFamily + ?Sized>(
     let roles: Vec<Role> = start.parameters(family).map(|(_, p)| p.role).collect();
     let searched = if roles.contains(&Role::Shape) { Role::Shape } else { Role::Amplitude };
     let free: Vec<usize> = (0..roles.len()).filter(|&k| roles[k] == searched).collect();
-    let parameters: Vec<Parameter> = start.parameters(family).map(|(_, p)| p.clone()).collect();
-    let domain: Vec<&Parameter> = free.iter().map(|&k| &parameters[k]).collect();
+    let parameters: Vec<TermParameter> = start.parameters(family).map(|(_, p)| p.clone()).collect();
+    let domain: Vec<&TermParameter> = free.iter().map(|&k| &parameters[k]).collect();
     let total = weighted_square(family.target(), weights).max(f64::MIN_POSITIVE);
     let (position, evaluations) = if searched == Role::Amplitude {
         let cost = quadratic(family, &start, &parameters, weights);
@@ -129,13 +129,13 @@ pub fn shaped<F: ModelFamily + ?Sized>(
     };
     let limits = neighbours(&tried, &shape);
     let shapes = about.parameters.iter().filter(|p| p.role == Role::Shape);
-    let window: Vec<Parameter> = shapes
+    let window: Vec<TermParameter> = shapes
         .zip(limits)
-        .map(|(parameter, (lower, upper))| Parameter { lower, upper, ..parameter.clone() })
+        .map(|(parameter, (lower, upper))| TermParameter { lower, upper, ..parameter.clone() })
         .collect();
     let (population, generations) = CANDIDATE;
     let method = Aep::practical().with_population(population);
-    let domain: Vec<&Parameter> = window.iter().collect();
+    let domain: Vec<&TermParameter> = window.iter().collect();
     let (found, _) = minimise(&domain, &|x: &[f64]| profile(x).0, &method, generations, seed);
     let searched = !shape.is_empty() && profile(&found).0 < profile(&shape).0;
     let shape = if searched { found } else { shape };
@@ -166,7 +166,7 @@ fn with_free(start: &Fitted, free: &[usize], x: &[f64]) -> Fitted {
 
 /// The best position and the evaluations it took; the start where a domain has no extent.
 fn minimise(
-    parameters: &[&Parameter],
+    parameters: &[&TermParameter],
     cost: &(dyn Fn(&[f64]) -> f64 + Sync),
     method: &dyn Method<f64>,
     generations: u64,
@@ -192,7 +192,7 @@ fn minimise(
 }
 
 /// Derivatives of the prediction with respect to the values themselves, not their logarithms.
-fn natural(fit: &Fit, parameters: &[Parameter]) -> Vec<Vec<f64>> {
+fn natural(fit: &Fit, parameters: &[TermParameter]) -> Vec<Vec<f64>> {
     fit.jacobian
         .iter()
         .zip(parameters)
@@ -208,7 +208,7 @@ fn natural(fit: &Fit, parameters: &[Parameter]) -> Vec<Vec<f64>> {
 fn quadratic<'a, F: ModelFamily + ?Sized>(
     family: &F,
     start: &'a Fitted,
-    parameters: &[Parameter],
+    parameters: &[TermParameter],
     weights: &[f64],
 ) -> impl Fn(&[f64]) -> f64 + 'a {
     let fit = fit::evaluate(family, start.clone(), weights);
@@ -229,7 +229,7 @@ fn quadratic<'a, F: ModelFamily + ?Sized>(
 fn projected<F: ModelFamily + ?Sized>(
     family: &F,
     start: &Fitted,
-    parameters: &[Parameter],
+    parameters: &[TermParameter],
     weights: &[f64],
 ) -> (Fitted, f64) {
     let fit = fit::evaluate(family, start.clone(), weights);

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use aep_core::Scale;
 use nalgebra::{DMatrix, DVector};
 
-use crate::family::{ModelFamily, Parameter};
+use crate::family::{ModelFamily, TermParameter};
 use crate::fit::Fit;
 use crate::report::Estimate;
 
@@ -40,7 +40,7 @@ pub fn estimates<F: ModelFamily + ?Sized>(
         .collect()
 }
 
-fn estimate(parameter: &Parameter, value: f64, error: f64) -> Estimate {
+fn estimate(parameter: &TermParameter, value: f64, error: f64) -> Estimate {
     let reach = STUDENT * error;
     let (low, high) = match parameter.scale {
         // Beyond e^50 an interval is everything.

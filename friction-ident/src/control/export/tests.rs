@@ -2,7 +2,7 @@ use super::super::course::Course;
 use super::super::trial::{Servo, run, samples};
 use super::super::{Settings, paper as figures};
 use super::*;
-use crate::effects::{ALL, Role};
+use crate::effects::{ALL, ParameterRole};
 use crate::model::Model;
 use crate::paper;
 use std::path::{Path, PathBuf};
@@ -109,7 +109,7 @@ fn every_effect_that_is_compensated_agrees_in_c() {
         // Nothing stays at 0, where a wrong law would not show.
         for (k, parameter) in about.parameters.iter().enumerate() {
             let address = crate::model::address(*effect, parameter.name);
-            if parameter.role != Role::Fixed && model.get(&address).unwrap() == 0.0 {
+            if parameter.role != ParameterRole::Fixed && model.get(&address).unwrap() == 0.0 {
                 let size = 0.1 * (k + 1) as f64 * axis.typical(parameter.quantity);
                 model.set(&address, size).unwrap();
             }
