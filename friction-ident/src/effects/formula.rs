@@ -411,6 +411,28 @@ mod tests {
     }
 
     #[test]
+    fn a_parameter_may_come_from_the_recording_and_is_not_linear_then() {
+        let file = |more: &str| {
+            format!(
+                "name = \"bump\"\nforce = \"a*exp(-((x - x_m)/0.01)^2)\"\n[parameters]\n\
+                 a = {{ unit = \"N\", low = -9.0, high = 9.0, default = 1.0, linear = true }}\n\
+                 x_m = {{ unit = \"m\", low = -1.0, high = 1.0, default = 0.1{more} }}\n"
+            )
+        };
+        let middle = |more: &str| {
+            let about = read(&file(more)).unwrap().about();
+            let k = about.parameter("x_m").unwrap();
+            (about.parameters[k].role, about.parameters[k].extent)
+        };
+        let taken = middle(", from = \"stroke-middle\"");
+        assert_eq!(taken, (ParameterRole::Fixed, Some(Extent::StrokeMiddle)));
+        assert_eq!(middle(""), (ParameterRole::Shape, None));
+        let both = file(", from = \"stroke-middle\", linear = true");
+        assert!(refused(&both).contains("leave out linear or from"), "{}", refused(&both));
+        assert!(refused(&file(", from = \"stroke\"")).contains("stroke-begin"));
+    }
+
+    #[test]
     fn a_level_follows_direction_and_load() {
         let effect = read(
             r#"

@@ -9,7 +9,7 @@ use missing_physics::statistics::split::Split;
 use missing_physics::{Coordinate, Fitted, ModelFamily};
 
 use super::FrictionFamily;
-use super::views::held_out;
+use super::views::{held_out, parted};
 use crate::axis::Quantity;
 use crate::model::{Model, ModelError};
 use crate::simulator::{Input, Start, simulate};
@@ -95,15 +95,8 @@ impl FrictionFamily {
         let name = format!("windows of {} s", text.trim_end_matches('0'));
         let errors = window_errors(model, &self.recording, &WindowOptions::new(length))
             .map_err(|error| format!("{name}: {error}"))?;
-        let (mut fit, mut validation) = (Vec::new(), Vec::new());
-        for window in errors.windows {
-            let middle = usize::midpoint(window.samples.start, window.samples.end);
-            match held_out(self.recording.time()[middle], &self.time, split) {
-                Some(true) => validation.push(window),
-                Some(false) => fit.push(window),
-                None => {}
-            }
-        }
+        let parts = (self.time.as_slice(), split);
+        let (fit, validation) = parted(errors.windows, self.recording.time(), parts);
         let position = self.recording.require("position").map_err(|error| error.to_string())?;
         let part = |windows: Vec<Window>| of_windows(length, windows, position);
         let metrics = SplitMetrics { fit: part(fit), validation: part(validation) };

@@ -24,15 +24,7 @@ pub fn views(
 ) -> Option<NamedError> {
     let length = LENGTH.max(SAMPLES * recording.interval());
     let errors = window_errors(model, recording, &WindowOptions::new(length)).ok()?;
-    let (mut fit, mut validation) = (Vec::new(), Vec::new());
-    for window in errors.windows {
-        let middle = recording.time()[usize::midpoint(window.samples.start, window.samples.end)];
-        match held_out(middle, grid, split) {
-            Some(true) => validation.push(window),
-            Some(false) => fit.push(window),
-            None => {}
-        }
-    }
+    let (fit, validation) = parted(errors.windows, recording.time(), (grid, split));
     let rms = |windows: Vec<Window>| WindowErrors { length, windows }.robust_rms();
     let error = SplitError { fit: rms(fit), validation: rms(validation) };
     Some(named(model.axis(), error))
@@ -40,6 +32,25 @@ pub fn views(
 
 fn named(axis: Axis, error: SplitError) -> NamedError {
     NamedError::absolute("window", axis.unit(Quantity::Length), error)
+}
+
+/// Windows on fitted and on held-out blocks, each where its middle lies; those between blocks are in neither. `grid` holds
+/// the times that `split` divides.
+pub(super) fn parted(
+    windows: Vec<Window>,
+    time: &[f64],
+    (grid, split): (&[f64], &Split),
+) -> (Vec<Window>, Vec<Window>) {
+    let (mut fit, mut validation) = (Vec::new(), Vec::new());
+    for window in windows {
+        let middle = time[usize::midpoint(window.samples.start, window.samples.end)];
+        match held_out(middle, grid, split) {
+            Some(true) => validation.push(window),
+            Some(false) => fit.push(window),
+            None => {}
+        }
+    }
+    (fit, validation)
 }
 
 /// Whether the block around an instant is held out; nothing between blocks.

@@ -58,6 +58,30 @@ pub struct Found {
 }
 
 impl Found {
+    /// Nothing beside the base model, nothing compared.
+    #[cfg(test)]
+    pub fn of(base: Node) -> Self {
+        Self {
+            base,
+            rungs: Vec::new(),
+            added: Vec::new(),
+            gains: Vec::new(),
+            costs: Vec::new(),
+            as_good: Vec::new(),
+            ranking: Vec::new(),
+            p_values: Vec::new(),
+            chance: Chance::default(),
+            last_screening: Vec::new(),
+            rival: None,
+            complete: false,
+            places: Vec::new(),
+            remarks: Vec::new(),
+            decisions: Vec::new(),
+            untried: Vec::new(),
+            stopped: false,
+        }
+    }
+
     /// The last model and its number of effects.
     pub fn top(&self) -> (&Node, usize) {
         (self.rungs.last().unwrap_or(&self.base), self.added.len())
@@ -193,4 +217,87 @@ pub struct Ranked {
     pub chance: Chance,
     /// Number of errors that say as much as independent ones.
     pub points: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::testing::{BEAT, Plant, WAVE};
+    use crate::report::Fault;
+
+    /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
+    fn found(lacks: Option<f64>) -> (Plant, Found) {
+        let mut plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        plant.lacks = lacks.map(|band| Series {
+            time: vec![0.0, 0.1],
+            force: vec![2.0, -2.0],
+            deviation: vec![band / 1.96; 2],
+            recorded: vec![9.0; 2],
+            known: vec![true; 2],
+        });
+        let node = |terms| fit::evaluated(&plant, Plant::model(terms), 0);
+        let (base, rung) = (node(&[]), node(&[(WAVE, &[0.05])]));
+        let mut found = Found { added: vec![WAVE], rungs: vec![rung], ..Found::of(base) };
+        found.place(&plant, &plant, &Thresholds::default());
+        (plant, found)
+    }
+
+    #[test]
+    fn names_go_where_the_force_that_is_lacking_is_still_lacking() {
+        let (plant, mut found) = found(Some(0.5));
+        assert!(!found.complete);
+        assert_eq!(
+            found.places[0],
+            Remains::MissingForce { rms: 2.0, band: 0.5, unit: "V".into() }
+        );
+        found.judge(&plant, &plant, &Thresholds::default());
+        assert!(found.added.is_empty() && found.rungs.is_empty() && !found.complete);
+        let [Remark::NotTheCause { effects, base, last, lacking, because }] = &found.remarks[..]
+        else {
+            panic!("{:?}", found.remarks)
+        };
+        assert_eq!((effects.as_slice(), because), (&["wave".to_owned()][..], &None));
+        assert!(base > last, "{base} {last}");
+        assert_eq!(lacking, &Some(Lacking { base: 2.0, last: 2.0, unit: "V".into() }));
+    }
+
+    #[test]
+    fn names_stand_where_that_force_is_not_known_or_nothing_is_left() {
+        for lacks in [Some(1.5), None] {
+            let (plant, mut found) = found(lacks);
+            found.judge(&plant, &plant, &Thresholds::default());
+            assert!(found.complete, "{:?}", found.places);
+            assert_eq!((found.added.as_slice(), found.remarks.len()), (&[WAVE][..], 0));
+        }
+    }
+
+    #[test]
+    fn names_go_where_what_is_left_is_in_a_few_wild_samples() {
+        let (plant, mut found) = found(None);
+        let top = found.rungs.pop().unwrap();
+        let mut errors = top.errors.clone();
+        errors[700] = 1e3;
+        found.rungs.push(Node::new(&plant, top.model.clone(), top.setting, errors));
+        found.place(&plant, &plant, &Thresholds::default());
+        let isolated = |remains: &Remains| matches!(remains, Remains::Faulty { fault: Fault::Isolated { share } } if *share > 0.9);
+        assert!(found.places.iter().any(isolated), "{:?}", found.places);
+        found.judge(&plant, &plant, &Thresholds::default());
+        assert!(found.added.is_empty());
+        assert!(matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]));
+    }
+
+    #[test]
+    fn what_gains_too_little_on_all_of_the_recording_is_taken_back_from_wherever_it_stood() {
+        // The part had a beat that the whole does not have; it stands below the wave.
+        let whole = Plant::new(1, &[(WAVE, &[0.05])]);
+        let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
+        let rungs = vec![node(&[(BEAT, &[0.03])]), node(&[(BEAT, &[0.03]), (WAVE, &[0.05])])];
+        let mut found = Found { added: vec![BEAT, WAVE], rungs, ..Found::of(node(&[])) };
+        found.confirm(&whole, &whole, &Thresholds { better: 20.0, ..Thresholds::default() });
+        assert_eq!(found.added, [WAVE]);
+        assert_eq!(found.rungs.len(), 1);
+        assert!(!found.rungs[0].model.terms.contains(&BEAT));
+        assert_eq!(found.remarks, [Remark::FoundInPartOnly { effect: "beat".into() }]);
+        assert!(found.gains[0].nats > 20.0 && found.complete);
+    }
 }

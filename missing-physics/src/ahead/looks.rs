@@ -309,3 +309,97 @@ fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
     let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
     asked || settings.time_limit.is_some_and(|limit| started.elapsed() >= limit)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::testing::{Plant, WAVE};
+
+    fn plant() -> Plant {
+        Plant::new(1, &[(WAVE, &[0.05])])
+    }
+
+    /// A result with so many effects.
+    fn sought<'a>(
+        reading: &'a Reading<'a, Plant>,
+        plant: &Plant,
+        effects: usize,
+        complete: bool,
+    ) -> Sought<'a, Plant> {
+        let base = evaluated(plant, Plant::model(&[]), 0);
+        let found = Found { added: vec![WAVE; effects], complete, ..Found::of(base) };
+        Sought { reading, found }
+    }
+
+    #[test]
+    fn what_leaves_nothing_with_fewer_effects_is_plainer_and_what_leaves_something_never_is() {
+        let plant = plant();
+        let reading = Reading::of(&plant).unwrap();
+        let of = |effects, complete| sought(&reading, &plant, effects, complete);
+        assert!(of(1, true).is_plainer_than(&of(2, true)));
+        assert!(of(3, true).is_plainer_than(&of(1, false)));
+        assert!(!of(2, true).is_plainer_than(&of(2, true)));
+        assert!(!of(1, false).is_plainer_than(&of(2, false)));
+    }
+
+    #[test]
+    fn two_effects_that_leave_nothing_are_a_pair_and_three_are_none() {
+        let plant = plant();
+        let reading = Reading::of(&plant).unwrap();
+        let is_pair = |effects, complete| sought(&reading, &plant, effects, complete).is_pair();
+        assert!(is_pair(2, true) && is_pair(0, true));
+        assert!(!is_pair(3, true) && !is_pair(2, false));
+    }
+
+    #[test]
+    fn a_cut_second_look_is_told_and_what_was_compared_before_stands_first() {
+        let plant = plant();
+        let reading = Reading::of(&plant).unwrap();
+        let cut = sought(&reading, &plant, 1, false).cut();
+        assert!(cut.found.stopped);
+        assert_eq!(cut.found.remarks, [Remark::SecondLookCut]);
+        let decision = |rung| Decision {
+            rung,
+            candidate: Vec::new(),
+            compared_with: Vec::new(),
+            difference: 0.0,
+            standard_error: 0.0,
+            budget: 1.0,
+            outcome: crate::report::Outcome::TooLittle,
+            because: None,
+        };
+        let mut later = sought(&reading, &plant, 1, true);
+        later.found.decisions = vec![decision(2)];
+        let all = later.after(vec![decision(1)]).found.decisions;
+        assert_eq!(all.iter().map(|d| d.rung).collect::<Vec<_>>(), [1, 2]);
+    }
+
+    #[test]
+    fn a_family_that_predicts_bears_nothing_out_for_residuals() {
+        let plant = plant();
+        let reading = Reading::of(&plant).unwrap();
+        let silent = sought(&reading, &plant, 0, false);
+        let mut other = sought(&reading, &plant, 1, true);
+        other.found.rungs = vec![evaluated(&plant, Plant::model(&[(WAVE, &[0.05])]), 0)];
+        assert!(!silent.is_silent_on(&other));
+        // The same errors, as those of a family that only gives residuals.
+        let residuals = Reading { residuals: true, ..Reading::of(&plant).unwrap() };
+        assert!(sought(&residuals, &plant, 0, false).is_silent_on(&other));
+        assert!(!sought(&residuals, &plant, 1, false).is_silent_on(&other));
+        other.found.rungs = vec![evaluated(&plant, Plant::model(&[(WAVE, &[-0.5])]), 0)];
+        assert!(!sought(&residuals, &plant, 0, false).is_silent_on(&other));
+    }
+
+    #[test]
+    fn a_search_is_over_when_it_was_asked_to_end_or_its_time_is_up() {
+        let started = Instant::now();
+        assert!(!is_over(&Settings::default(), started));
+        let flag = std::sync::atomic::AtomicBool::new(false);
+        let asked = Settings { stop: Some(&flag), ..Settings::default() };
+        assert!(!is_over(&asked, started));
+        flag.store(true, Ordering::Relaxed);
+        assert!(is_over(&asked, started));
+        let time_limit = Some(std::time::Duration::ZERO);
+        assert!(is_over(&Settings { time_limit, ..Settings::default() }, started));
+    }
+}

@@ -46,3 +46,45 @@ pub fn needs_less<F: ModelFamily + ?Sized>(
 fn gain(from: &Node, to: &Node) -> f64 {
     to.errors.len() as f64 / to.correlation() * (from.deviation / to.deviation).ln()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::fit;
+    use crate::ahead::testing::{BEAT, Plant, WAVE};
+
+    fn model(plant: &Plant, terms: &[(usize, &[f64])]) -> Node {
+        fit::evaluated(plant, Plant::model(terms), 0)
+    }
+
+    #[test]
+    fn the_better_prediction_is_preferred_and_one_effect_less_may_cost_what_one_must_gain() {
+        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        let (good, poor) = (model(&plant, &[(WAVE, &[0.05])]), model(&plant, &[]));
+        let alike = nats((&good, 1), (&poor, 1), 20.0);
+        assert!(alike > 20.0, "{alike}");
+        assert_eq!(nats((&poor, 1), (&good, 1), 20.0), -gain(&good, &poor).abs());
+        assert_eq!(nats((&good, 0), (&poor, 1), 20.0), alike + 20.0);
+        assert_eq!(nats((&good, 2), (&poor, 1), 20.0), alike - 20.0);
+        assert_eq!(nats((&good, 1), (&good, 2), 20.0), 20.0);
+    }
+
+    /// A search's result: these models, one effect more each.
+    fn result(plant: &Plant, added: &[usize], rungs: Vec<Node>) -> Found {
+        Found { added: added.to_vec(), rungs, ..Found::of(model(plant, &[])) }
+    }
+
+    #[test]
+    fn a_reading_in_which_an_effect_does_nothing_needs_less() {
+        let wave: (usize, &[f64]) = (WAVE, &[0.05]);
+        let both = Plant::new(2, &[wave, (BEAT, &[0.03])]);
+        let rungs = vec![model(&both, &[wave]), model(&both, &[wave, (BEAT, &[0.03])])];
+        let found = result(&both, &[WAVE, BEAT], rungs);
+        // The same noise, and no beat in it.
+        let other = Plant::new(2, &[wave]);
+        assert!(needs_less(&found, &other, &Fitter::new(&other, &other), 20.0));
+        assert!(!needs_less(&found, &both, &Fitter::new(&both, &both), 20.0));
+        let nothing = result(&both, &[], Vec::new());
+        assert!(!needs_less(&nothing, &other, &Fitter::new(&other, &other), 20.0));
+    }
+}
