@@ -74,7 +74,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let better = self.thresholds.better;
         let needed = if instead_of > 1 { -better } else { better };
         let outcome = if by.nats > needed { Outcome::Rival } else { Outcome::Worse };
-        self.note(instead_of, with, last, by, outcome, because(rival));
+        self.note(instead_of, with, last, by, outcome, Some(because(rival)));
         outcome == Outcome::Rival
     }
 
@@ -110,7 +110,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 &from,
                 negative(cost),
                 Outcome::Dropped,
-                because(rival),
+                Some(because(rival)),
             );
             kept.retain(|t| *t != term);
             beside = without;
@@ -141,6 +141,6 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 }
 
-fn because(rival: &Rival) -> Option<Reason> {
-    Some(Reason::Rival { rival: rival.title.to_owned() })
+fn because(rival: &Rival) -> Reason {
+    Reason::Rival { rival: rival.title.to_owned() }
 }
