@@ -414,7 +414,7 @@ mod tests {
     fn a_parameter_may_come_from_the_recording_and_is_not_linear_then() {
         let file = |more: &str| {
             format!(
-                "name = \"bump\"\nforce = \"a*exp(-((x - x_m)/0.01)^2)\"\n[parameters]\n\
+                "name = \"bump\"\nforce = \"a*exp(-(((x - x_m)/0.01)^2))\"\n[parameters]\n\
                  a = {{ unit = \"N\", low = -9.0, high = 9.0, default = 1.0, linear = true }}\n\
                  x_m = {{ unit = \"m\", low = -1.0, high = 1.0, default = 0.1{more} }}\n"
             )
