@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use missing_physics::measurement::period::period;
 use missing_physics::{Coordinate, Recording};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Effort, Quantity};
 
-/// Fewest cycles that blocks are made of: fitted and held-out ones are needed.
-const FEWEST: usize = 3;
+/// Two stretches of motion repeat each other where they differ by less than this share of the
+/// motion's standard deviation.
+const REPEATS: f64 = 0.02;
 
 /// The coordinates of the comparison grid.
 pub fn coordinates(
@@ -113,13 +113,52 @@ fn slope(values: &[f64], interval: f64) -> Vec<f64> {
 pub fn cycles(p: &Prepared) -> Vec<Range<usize>> {
     let [range] = p.segments.as_slice() else { return Vec::new() };
     let x = &p.position[range.clone()];
-    let Some(period) = period(x).filter(|period| FEWEST * period <= x.len()) else {
-        return Vec::new();
-    };
+    let Some(period) = period(x) else { return Vec::new() };
     // The last cycle may be cut short; less than half of one belongs to its predecessor.
     let count = (x.len() + period / 2) / period;
     let at = |sample: usize| p.grid.partition_point(|&k| k < range.start + sample);
     (0..count)
         .map(|c| at(c * period)..if c + 1 == count { p.grid.len() } else { at((c + 1) * period) })
         .collect()
+}
+
+/// The period of a motion that repeats itself at least three times, in samples.
+fn period(x: &[f64]) -> Option<usize> {
+    let n = x.len();
+    let mean = x.iter().sum::<f64>() / n as f64;
+    let deviation = (x.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n as f64).sqrt();
+    let difference = |lag: usize, step: usize| {
+        let pairs = (0..n - lag).step_by(step);
+        let count = pairs.len() as f64;
+        (pairs.map(|k| (x[k + lag] - x[k]).powi(2)).sum::<f64>() / count).sqrt() / deviation
+    };
+    let (coarse, step) = ((n / 2000).max(1), (n / 1000).max(1));
+    let candidates: Vec<usize> = (n / 40..n / 3).step_by(coarse).collect();
+    // A lag near a period, then the best lag around it.
+    let near = candidates.into_iter().find(|&lag| difference(lag, step) < 2.0 * REPEATS)?;
+    let around = near..(near + 20 * coarse).min(n / 2);
+    let best = around.min_by(|&a, &b| difference(a, step).total_cmp(&difference(b, step)))?;
+    (difference(best, 1) < REPEATS).then_some(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_of_four_cycles_has_their_period() {
+        let x: Vec<f64> = (0..24_841)
+            .map(|k| {
+                let phase = std::f64::consts::TAU * f64::from(k) / 6240.0;
+                phase.sin() + 0.3 * (3.0 * phase + 1.0).cos()
+            })
+            .collect();
+        assert!(period(&x).unwrap().abs_diff(6240) < 3);
+    }
+
+    #[test]
+    fn a_motion_without_repeats_has_no_period() {
+        let x: Vec<f64> = (0..9000).map(|k| (1e-6 * f64::from(k) * f64::from(k)).sin()).collect();
+        assert_eq!(period(&x), None);
+    }
 }

@@ -293,7 +293,9 @@ mod tests {
         let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
         let rungs = vec![node(&[(BEAT, &[0.03])]), node(&[(BEAT, &[0.03]), (WAVE, &[0.05])])];
         let mut found = Found { added: vec![BEAT, WAVE], rungs, ..Found::of(node(&[])) };
-        found.confirm(&whole, &whole, &Thresholds { better: 20.0, ..Thresholds::default() });
+        // Nothing is known of chance here.
+        let thresholds = Thresholds { better: 20.0, chance: 1.0, ..Thresholds::default() };
+        found.confirm(&whole, &whole, &thresholds);
         assert_eq!(found.added, [WAVE]);
         assert_eq!(found.rungs.len(), 1);
         assert!(!found.rungs[0].model.terms.contains(&BEAT));

@@ -2,7 +2,6 @@
 //! need no more than this room; it imports nothing of the engine.
 
 pub mod check;
-pub mod period;
 pub mod quantity;
 mod recording;
 

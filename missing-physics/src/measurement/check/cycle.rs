@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Recording;
-use crate::measurement::period::{difference, period};
 use crate::measurement::quantity::quantity;
 
 /// Motion that repeats.
@@ -21,6 +20,12 @@ pub struct Cycle {
     /// Unit of the force.
     pub force_unit: String,
 }
+
+/// The scan for the period looks at about this many samples.
+const COARSE: usize = 1500;
+/// What differs from cycle to cycle, as a share of the signal's own deviation.
+const COARSE_MATCH: f64 = 0.1;
+const MATCH: f64 = 0.02;
 
 impl Cycle {
     pub(super) fn of(recording: &Recording) -> Option<Self> {
@@ -53,4 +58,43 @@ impl Cycle {
         let force = quantity(force, &self.force_unit);
         format!("{motion}; from cycle to cycle the force differs by {force} rms")
     }
+}
+
+/// The shortest lag after which the signal repeats, at least twice.
+fn period(values: &[f64]) -> Option<usize> {
+    let stride = values.len().div_ceil(COARSE).max(1);
+    let coarse: Vec<f64> = values.iter().copied().step_by(stride).collect();
+    let spread = deviation(&coarse);
+    if spread == 0.0 {
+        return None;
+    }
+    // A smooth signal is like itself after a few samples: first it must become unlike.
+    let lags = 1..=coarse.len() / 2;
+    let unlike = lags.clone().find(|&lag| difference(&coarse, lag) > spread)?;
+    let candidates = (unlike..*lags.end()).filter(|&lag| {
+        let here = difference(&coarse, lag);
+        here < COARSE_MATCH * spread && here <= difference(&coarse, lag + 1)
+    });
+    candidates.take(20).find_map(|lag| {
+        let best = refined(values, lag * stride, stride)?;
+        (difference(values, best) < MATCH * spread).then_some(best)
+    })
+}
+
+fn refined(values: &[f64], near: usize, stride: usize) -> Option<usize> {
+    let lags = near.saturating_sub(stride)..=(near + stride).min(values.len() / 2);
+    lags.min_by(|&a, &b| difference(values, a).total_cmp(&difference(values, b)))
+}
+
+/// Root mean square of `x(k + lag) - x(k)`.
+fn difference(values: &[f64], lag: usize) -> f64 {
+    let pairs = values.iter().zip(&values[lag..]);
+    let squares: f64 = pairs.map(|(a, b)| (b - a).powi(2)).sum();
+    (squares / (values.len() - lag).max(1) as f64).sqrt()
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (squares / values.len() as f64).sqrt()
 }
