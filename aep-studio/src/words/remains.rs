@@ -17,6 +17,13 @@ pub fn remains(what: &Remains) -> String {
             let course = self::course(course);
             format!("{} {does}: {course}. Why, this recording does not show.", capital(rival))
         }
+        Remains::Outdone { by, refusal, instead_of, nats } => format!(
+            "{} predicts better than {} by {nats:.0} nats, but is not that ({}): what is missing acts like it and is not in \
+             the library.",
+            by.join(" + "),
+            instead_of.join(" + "),
+            super::refusal(refusal)
+        ),
         Remains::RivalsUnasked => {
             "Whether something that varies freely with time does as much was not asked any more."
                 .to_owned()

@@ -169,6 +169,12 @@ impl Effect for FrictionStep {
         Some(&[40])
     }
 
+    /// From one trial to the middle between two, and halves of that: a fit feels where the step is no farther than it
+    /// rises.
+    fn leaps(&self) -> Option<(usize, &'static [f64])> {
+        Some((3, &[-0.012, -0.006, -0.003, 0.003, 0.006, 0.012]))
+    }
+
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
         for (i, level) in level.iter_mut().enumerate() {
             let (begin, end) = (p.get(0)[i], p.get(1)[i]);

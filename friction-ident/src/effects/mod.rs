@@ -156,6 +156,11 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// The index of a parameter whose valley is narrow, and how far beside a fit other ones are looked for.
+    fn leaps(&self) -> Option<(usize, &'static [f64])> {
+        None
+    }
+
     /// Whether every axis has it: the usual effects make the base model where nobody names one, and no challenge hides
     /// them.
     fn is_usual(&self) -> bool {

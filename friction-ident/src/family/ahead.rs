@@ -236,7 +236,7 @@ impl Ahead for View<'_> {
     }
 
     fn variations(&self, model: &Fitted) -> Vec<Fitted> {
-        self.family.other_second_bodies(model)
+        self.family.beside(model)
     }
 
     fn relatives(&self, model: &Fitted) -> Vec<Fitted> {

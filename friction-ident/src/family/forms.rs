@@ -149,9 +149,22 @@ impl FrictionFamily {
         trials
     }
 
+    /// The model in other valleys of its last term, if those are narrow.
+    pub(super) fn beside(&self, model: &Fitted) -> Vec<Fitted> {
+        let leaps = model.terms.last().and_then(|term| self.effect(*term)?.leaps());
+        let Some((parameter, distances)) = leaps else { return self.other_second_bodies(model) };
+        let k = model.range(self, model.terms.len() - 1).start + parameter;
+        let at = |distance: &f64| {
+            let mut other = model.clone();
+            other.values[k] += distance;
+            other
+        };
+        distances.iter().map(at).collect()
+    }
+
     /// The model with its second body, if that is the last term, at other gaps or frequencies and with other shares
     /// of the friction.
-    pub(super) fn other_second_bodies(&self, model: &Fitted) -> Vec<Fitted> {
+    fn other_second_bodies(&self, model: &Fitted) -> Vec<Fitted> {
         let Some(&term) = model.terms.last().filter(|term| self.is_second_body(**term)) else {
             return Vec::new();
         };

@@ -6,18 +6,20 @@
 
 mod conclude;
 mod grow;
+mod outdone;
 mod rivals;
 mod shape;
 
 use std::collections::BTreeSet;
 
+use super::Ahead;
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::found::{Found, Ranked};
 use super::node::Node;
+use super::refused::refused;
 use super::screen::{Screened, screen};
-use super::{Ahead, scales};
-use crate::family::{Fitted, ModelFamily, Role};
+use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Outcome, Reason, Refusal, Remains, Remark};
 use crate::task::{Event, Thresholds};
 
@@ -32,8 +34,6 @@ const RESCANS: usize = 3;
 const LOWER: f64 = 0.99;
 /// A model is well inside the budget below this multiple of it.
 const INSIDE: f64 = 1.12;
-/// Share of an amplitude of every model below which nothing of it is left.
-const GONE: f64 = 0.01;
 /// A form must be better than another one by this much to take its place, nats.
 const FORM: f64 = 4.0;
 
@@ -46,6 +46,8 @@ pub struct Climb {
     /// Sets of effects by their number, the best first.
     nodes: Vec<Vec<Node>>,
     ranking: Vec<Ranked>,
+    /// Sets that predict better than what they were grown from, but are not what they are called, and why.
+    refused: Vec<(Node, Refusal)>,
     /// Those of the last size that are extended.
     beam: Vec<Node>,
     ended: bool,
@@ -134,6 +136,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let mut climb = Climb {
             nodes: vec![vec![base.clone()]],
             ranking: Vec::new(),
+            refused: Vec::new(),
             beam: vec![base.clone()],
             base,
             ended: false,
@@ -149,7 +152,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         loop {
             let (needed, costs) = self.prune(&climb, best);
             let last = self.plainest(needed, &costs);
-            if let Some((term, refusal)) = self.refused(&climb.base, &last) {
+            if let Some((term, refusal)) = refused(self.family, self.ahead, &climb.base, &last) {
                 // Its last fit took it there.
                 let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
                 if let Some((_, cost, without)) = costs.iter().find(is).or(costs.last()) {
@@ -161,7 +164,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
             }
             if rival.is_none() {
-                if let Some((without, found)) = self.rivalled(&climb, &last) {
+                let instead = self.rivalled(&climb, &last).or_else(|| self.outdone(&climb, &last));
+                if let Some((without, found)) = instead {
                     rival = Some(found);
                     best = without;
                     continue;
@@ -292,34 +296,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             outcome,
             because,
         });
-    }
-
-    /// The effect of a set that is not one as it was fitted, and why, if any: an amplitude ended at the limit of its
-    /// search, what makes it that effect is gone (a gap of no width), or it left nothing of what every model has (a
-    /// mass).
-    fn refused(&self, base: &Node, node: &Node) -> Option<(usize, Refusal)> {
-        let moved = scales::of(self.family, &node.model);
-        for (place, index) in node.model.terms.iter().enumerate() {
-            let term = &self.family.terms()[*index];
-            for (k, parameter) in node.model.range(self.family, place).zip(&term.parameters) {
-                if parameter.role != Role::Amplitude {
-                    continue;
-                }
-                let key = || term.key(parameter);
-                let gone = |before: f64| node.model.values[k].abs() < GONE * before.abs();
-                match base.model.values.get(k) {
-                    Some(before) if term.always && parameter.lower >= 0.0 && gone(*before) => {
-                        let last = *node.model.terms.last()?;
-                        return Some((last, Refusal::NothingLeft { parameter: key() }));
-                    }
-                    None if moved[k].is_at_far_limit() => {
-                        return Some((*index, Refusal::AtLimit { parameter: key() }));
-                    }
-                    _ => {}
-                }
-            }
-        }
-        self.ahead.vanishes(&node.model)
     }
 }
 

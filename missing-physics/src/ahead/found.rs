@@ -6,6 +6,7 @@ use super::chance::Chance;
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::node::Node;
+use super::refused::refused;
 use super::screen::Promise;
 use super::{Ahead, local};
 use crate::family::Series;
@@ -15,7 +16,8 @@ use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
 const IN_FULL: usize = 8;
-/// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
+/// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part. Asked
+/// where that force is larger than its own 95 % band, below which little is known of it.
 const MOST: f64 = 0.5;
 
 /// What a search found.
@@ -109,6 +111,10 @@ impl Found {
         self.base = whole(&self.base.model);
         self.rungs = self.rungs.par_iter().map(|rung| whole(&rung.model)).collect();
         while let Some(top) = self.rungs.last() {
+            // All of the recording may take an effect to where it is none.
+            let refused = refused(family, ahead, &self.base, top);
+            let place = |term: usize| self.added.iter().position(|t| main(*t) == main(term));
+            let refused = refused.and_then(|(term, refusal)| Some((place(term)?, refusal)));
             let last = self.added.len() - 1;
             let below = last.checked_sub(1).map_or(&self.base, |k| &self.rungs[k]);
             let costs = self.added.par_iter().enumerate().map(|(k, term)| {
@@ -121,10 +127,16 @@ impl Found {
             let idle = each
                 .filter(|(_, (cost, p))| cost.nats < thresholds.better || **p > thresholds.chance)
                 .min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
-            let Some((idle, _)) = idle else { break };
+            let goes = refused
+                .map(|(place, refusal)| (place, Some(refusal)))
+                .or_else(|| idle.map(|(place, _)| (place, None)));
+            let Some((idle, refusal)) = goes else { break };
             let term = self.added.remove(idle);
             let effect = family.terms()[term].name.clone();
-            self.remarks.push(Remark::FoundInPartOnly { effect });
+            self.remarks.push(match refusal {
+                Some(refusal) => Remark::NotNamed { effects: vec![effect], refusal },
+                None => Remark::FoundInPartOnly { effect },
+            });
             let mut rungs = std::mem::take(&mut self.rungs);
             let above = rungs.split_off(idle + 1);
             rungs.pop();
@@ -158,7 +170,7 @@ impl Found {
     }
 
     /// Takes all names back where they are not the cause: what is left is in a few wild samples, samples are known to be
-    /// faulty, the greater part of the force that the base model lacks is still lacking beyond doubt, or what is no effect
+    /// faulty, the greater part of the force that the base model lacks is still lacking, or what is no effect
     /// does more.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
@@ -168,14 +180,12 @@ impl Found {
     ) {
         let Some(top) = self.rungs.last() else { return };
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
-        if self.complete && no_cause.is_none() {
-            return;
-        }
         let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
         let still = lacks(top).zip(lacks(&self.base)).is_some_and(|((rms, band), (before, _))| {
-            rms > thresholds.local * band && rms * rms > MOST * before * before
+            rms > band && rms * rms > MOST * before * before
         });
-        let faulty = local::faults(&top.errors).is_some() || ahead.faults().is_some();
+        let faulty =
+            !self.complete && (local::faults(&top.errors).is_some() || ahead.faults().is_some());
         if !still && !faulty && no_cause.is_none() {
             return;
         }
@@ -263,11 +273,12 @@ mod tests {
 
     #[test]
     fn names_stand_where_that_force_is_not_known_or_nothing_is_left() {
-        for lacks in [Some(1.5), None] {
+        for (lacks, stand) in [(Some(2.5), true), (None, true), (Some(1.5), false)] {
             let (plant, mut found) = found(lacks);
-            found.judge(&plant, &plant, &Thresholds::default());
             assert!(found.complete, "{:?}", found.places);
-            assert_eq!((found.added.as_slice(), found.remarks.len()), (&[WAVE][..], 0));
+            found.judge(&plant, &plant, &Thresholds::default());
+            assert_eq!((found.added.len(), found.complete), (usize::from(stand), stand));
+            assert_eq!(found.remarks.is_empty(), stand);
         }
     }
 
@@ -301,5 +312,20 @@ mod tests {
         assert!(!found.rungs[0].model.terms.contains(&BEAT));
         assert_eq!(found.remarks, [Remark::FoundInPartOnly { effect: "beat".into() }]);
         assert!(found.gains[0].nats > 20.0 && found.complete);
+    }
+
+    #[test]
+    fn what_all_of_the_recording_takes_to_where_it_is_none_is_not_named() {
+        let mut whole = Plant::new(1, &[(WAVE, &[0.05])]);
+        whole.none = Some(WAVE);
+        let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
+        let rungs = vec![node(&[(WAVE, &[0.05])])];
+        let mut found = Found { added: vec![WAVE], rungs, ..Found::of(node(&[])) };
+        found.confirm(&whole, &whole, &Thresholds::default());
+        assert!(found.added.is_empty() && found.rungs.is_empty());
+        let [Remark::NotNamed { effects, .. }] = &found.remarks[..] else {
+            panic!("{:?}", found.remarks)
+        };
+        assert_eq!(effects, &["wave"]);
     }
 }

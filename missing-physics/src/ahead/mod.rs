@@ -17,6 +17,7 @@ mod looks;
 pub mod node;
 pub mod quick;
 mod reading;
+mod refused;
 mod report;
 mod residuals;
 mod scales;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::course::Course;
 use super::place::Where;
+use super::refusal::Refusal;
 
 /// What is wrong with the recording itself.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +37,17 @@ pub enum Remains {
         nats: f64,
         /// What it was found to be.
         course: Course,
+    },
+    /// A model that is not what it is called predicts better than effects that would be named.
+    Outdone {
+        /// Its effects.
+        by: Vec<String>,
+        /// Why it is not what it is called.
+        refusal: Refusal,
+        /// The effects that are not named for it.
+        instead_of: Vec<String>,
+        /// What it gains over the model with them, nats.
+        nats: f64,
     },
     /// Time ran out before anything that stands for no effect was asked.
     RivalsUnasked,

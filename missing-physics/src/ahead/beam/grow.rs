@@ -8,6 +8,7 @@ use super::{Climb, INSIDE, STEPS, Search};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::Ranked;
 use crate::ahead::node::Node;
+use crate::ahead::refused::refused;
 use crate::ahead::screen::{Promise, Screened, screen};
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Outcome, Reason, Remark};
@@ -49,12 +50,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
             for child in children {
                 let gain = self.comparison.compare(from, &child);
-                if let Some((_, refusal)) = self.refused(&climb.base, &child) {
+                if let Some((_, refusal)) = refused(self.family, self.ahead, &climb.base, &child) {
                     let because = Some(Reason::Refused { refusal: refusal.clone() });
                     self.note(size, &child, from, gain, Outcome::NotIdentifiable, because);
-                    if gain.nats > self.thresholds.better && size == 1 {
-                        let effects = self.names(&child);
-                        self.remarks.push(Remark::NotNamed { effects, refusal });
+                    if gain.nats > self.thresholds.better {
+                        if size == 1 {
+                            let (effects, refusal) = (self.names(&child), refusal.clone());
+                            self.remarks.push(Remark::NotNamed { effects, refusal });
+                        }
+                        climb.refused.push((child, refusal));
                     }
                     continue;
                 }

@@ -35,7 +35,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if (self.stop)() || start.gain < PROMISED * self.thresholds.better {
             return None;
         }
-        let free = self.refit(start.starts.first()?, base.setting, STEPS.2);
+        let free = self.leapt(self.refit(start.starts.first()?, base.setting, STEPS.2));
         // Of more effects some may be needed beside it.
         if added.len() <= 2 && !self.does_as_much(last, &free, added.len(), rival) {
             return None;
@@ -123,7 +123,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// The model with only these of its added effects, refitted.
-    fn only(&self, base: &Node, last: &Node, kept: &[usize]) -> Node {
+    pub(super) fn only(&self, base: &Node, last: &Node, kept: &[usize]) -> Node {
         let model = self.keeping(last, &Self::added(base, last), kept);
         self.refit(&model, last.setting, STEPS.1)
     }

@@ -33,7 +33,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// The node at the bottom of its valley, or of a lower one beside it.
     pub(super) fn rescanned(&self, node: &Node) -> Node {
-        let mut node = self.refit(&node.model, node.setting, STEPS.2);
+        self.leapt(self.refit(&node.model, node.setting, STEPS.2))
+    }
+
+    /// A fitted node, or the lowest valley that is reached by leaps from it.
+    pub(super) fn leapt(&self, mut node: Node) -> Node {
         for _ in 0..RESCANS {
             let beside = self.ahead.variations(&node.model);
             if beside.is_empty() || (self.stop)() {

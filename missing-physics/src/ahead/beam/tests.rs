@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
 use crate::ahead::fit;
-use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, RIVAL, TONE, WAVE};
+use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, RIVAL, TONE, TWIN, WAVE};
 use crate::report::{Course, Verdict};
 use crate::{Observer, Settings, discover};
 
@@ -193,13 +193,17 @@ fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
     let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &never, &|_| ());
     for (amplitude, known) in [(10.0, true), (0.05, false), (0.0, false)] {
         let node = fit::evaluated(&plant, Plant::model(&[(WAVE, &[amplitude])]), 0);
-        assert_eq!(search.refused(&base, &node).is_some(), known, "{amplitude}");
+        assert_eq!(
+            refused(search.family, search.ahead, &base, &node).is_some(),
+            known,
+            "{amplitude}"
+        );
     }
     // What every model has is not given up for an effect.
     for (drive, known) in [(0.5, false), (0.005, true)] {
         let model = Fitted { terms: vec![0, WAVE], values: vec![drive, 0.05] };
         let node = fit::evaluated(&plant, model, 0);
-        let why = search.refused(&base, &node).map(|(_, why)| why);
+        let why = refused(search.family, search.ahead, &base, &node).map(|(_, why)| why);
         let parameter = "drive.size".to_owned();
         assert_eq!(why, known.then_some(Refusal::NothingLeft { parameter }));
     }
@@ -277,4 +281,20 @@ fn an_effect_whose_plain_form_is_none_is_not_named_where_that_form_is_as_good() 
     let is_none = |d: &&Decision| matches!(d.because, Some(Reason::Refused { .. }));
     let refused = found.decisions.iter().find(is_none).unwrap();
     assert_eq!(refused.outcome, Outcome::NotIdentifiable);
+}
+
+#[test]
+fn an_effect_that_predicts_less_than_a_refused_one_is_not_the_cause() {
+    let mut plant = Plant::new(9, &[(WAVE, &[0.1])]);
+    let close = Thresholds { share: 0.0, ..narrow() };
+    let search = |plant: &Plant| among(&[WAVE, TWIN], plant, close, 1);
+    assert_eq!(search(&plant).added, [WAVE]);
+    plant.none = Some(WAVE);
+    let found = search(&plant);
+    assert_eq!((found.added.len(), found.complete), (0, false));
+    let Some(Remains::Outdone { by, instead_of, nats, .. }) = found.rival else {
+        panic!("{:?}", found.rival)
+    };
+    assert_eq!((by, instead_of), (vec!["wave".to_owned()], vec!["twin".to_owned()]));
+    assert!(nats > 20.0, "{nats}");
 }

@@ -1,0 +1,57 @@
+//! Whether a model that was refused predicts better than the effects that were found.
+//!
+//! What ends at a limit, or lost what makes it that effect, is not named. It still shows how much of the error as few
+//! effects can foretell. Where those that would be named in its place foretell less, they imitate a part of what is
+//! missing and are not its cause. Effects that the refused model has, too, stay.
+
+use super::{Climb, Search};
+use crate::ahead::node::Node;
+use crate::family::ModelFamily;
+use crate::report::{Outcome, Reason, Remains};
+
+impl<F: ModelFamily + ?Sized> Search<'_, F> {
+    /// The model without the effects that a refused one of no more effects outdoes, and what is to be said of it.
+    pub(super) fn outdone(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
+        let base = &climb.base;
+        let added = Self::added(base, last);
+        let (refused, refusal, by) = climb
+            .refused
+            .iter()
+            .filter(|(refused, _)| Self::added(base, refused).len() <= added.len())
+            .filter(|(refused, _)| !self.stands_for(refused, last))
+            .map(|(node, refusal)| (node, refusal, self.comparison.compare(last, node)))
+            .max_by(|a, b| a.2.nats.total_cmp(&b.2.nats))?;
+        let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
+        let outcome = if by.nats > clear { Outcome::Rival } else { Outcome::Worse };
+        let because = Some(Reason::Refused { refusal: refusal.clone() });
+        self.note(added.len(), refused, last, by, outcome, because);
+        if outcome == Outcome::Worse {
+            return None;
+        }
+        let others = self.key(refused);
+        let (kept, gone): (Vec<usize>, Vec<usize>) =
+            added.iter().partition(|term| others.contains(&self.main(**term)));
+        let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
+        let named = |terms: &[usize]| {
+            terms.iter().map(|t| self.family.terms()[*t].name.clone()).collect::<Vec<String>>()
+        };
+        let found = Remains::Outdone {
+            by: named(&Self::added(base, refused)),
+            refusal: refusal.clone(),
+            instead_of: named(&gone),
+            nats: self.in_full(by.nats),
+        };
+        Some((result, found))
+    }
+
+    /// Whether a refused model is another way to write one: it has the same effects, or would have in the form that it
+    /// is related to (a contact that gives more than its gap is wide is a spring).
+    fn stands_for(&self, refused: &Node, node: &Node) -> bool {
+        let has = |terms: &[usize]| {
+            let mains: Vec<usize> = terms.iter().map(|term| self.main(*term)).collect();
+            node.model.terms.iter().all(|term| mains.contains(&self.main(*term)))
+        };
+        let related = self.ahead.relatives(&refused.model);
+        has(&refused.model.terms) || related.iter().any(|model| has(&model.terms))
+    }
+}
