@@ -2,12 +2,14 @@
 
 use aep_data::Loaded;
 use aep_studio::Source;
+use aep_studio::report::Explained;
+use friction_ident::family::mistaken_for;
 use missing_physics::measurement::check::DataCheck;
-use missing_physics::report::Combinations;
+use missing_physics::report::{Combinations, Samples};
 use missing_physics::{Discovery, Thresholds};
 use serde_json::{Value, json};
 
-use crate::args::{OutputArgs, quoted};
+use crate::args::{OutputArgs, library, quoted};
 use crate::failure::Failure;
 use crate::output::{save, save_json, written};
 
@@ -34,6 +36,8 @@ pub struct Report<'a> {
     pub thresholds: Thresholds,
     /// What parameters of the last model make together.
     pub together: Combinations,
+    /// The recording and its models sample by sample, where a page is asked for.
+    pub samples: Samples,
     /// Further entries of the JSON.
     pub more: Vec<(&'static str, Value)>,
 }
@@ -55,7 +59,14 @@ impl Report<'_> {
 
     fn page(&self) -> String {
         let together = self.together.clone();
-        let source = Source { thresholds: self.thresholds, together, ..source(self.loaded) };
+        let samples = self.samples.clone();
+        let source = Source {
+            thresholds: self.thresholds,
+            together,
+            samples,
+            effects: explained(),
+            ..source(self.loaded)
+        };
         match self.kind {
             Kind::Discovery => aep_studio::report::html(self.discovery, &source, self.check),
             Kind::Comparison => aep_studio::report::comparison(self.discovery, &source, self.check),
@@ -115,7 +126,32 @@ pub fn source(loaded: &Loaded) -> Source {
         command: command(),
         thresholds: Thresholds::default(),
         together: Combinations::default(),
+        samples: Samples::default(),
+        effects: Vec::new(),
     }
+}
+
+/// What is known of every effect.
+fn explained() -> Vec<Explained> {
+    let library = library();
+    let each = library.effects().iter().flat_map(|effect| {
+        let forms = effect.forms().iter().map(|form| form.about());
+        std::iter::once(effect.about()).chain(forms).collect::<Vec<_>>()
+    });
+    let explained = each.map(|about| Explained {
+        name: about.name.to_owned(),
+        title: about.title.to_owned(),
+        equation: about.equation.to_owned(),
+        shows: about.shows.to_owned(),
+        reference: about.reference.to_owned(),
+        parameters: (about.parameters.iter())
+            .map(|parameter| [parameter.name.to_owned(), parameter.meaning.to_owned()])
+            .collect(),
+        mistaken_for: (mistaken_for(library.effects(), about.name).into_iter())
+            .map(|alike| [alike.effects.join(", "), alike.experiment.to_owned()])
+            .collect(),
+    });
+    explained.collect()
 }
 
 /// How the page is made again, as a shell takes it.

@@ -12,7 +12,7 @@ use missing_physics::diagnosis::fitted_blocks;
 use missing_physics::fit::{self, Fit};
 use missing_physics::measurement::cut_at_gaps;
 use missing_physics::report::Rung;
-use missing_physics::{Recording, model_of, terms};
+use missing_physics::{Discovery, Fitted, Recording, model_of, terms};
 
 use crate::args::library;
 use crate::failure::Failure;
@@ -40,6 +40,11 @@ pub fn family(
 ) -> Result<FrictionFamily, Failure> {
     let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
     Ok(FrictionFamily::new(&whole, &options(bandwidth, known))?)
+}
+
+/// The models of a ladder.
+pub fn ladder(family: &FrictionFamily, discovery: &Discovery) -> Result<Vec<Fitted>, Failure> {
+    discovery.ladder.iter().map(|rung| Ok(model_of(family, rung)?)).collect()
 }
 
 /// How a recording is prepared.

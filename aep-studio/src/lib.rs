@@ -1,9 +1,11 @@
 //! The report page: a self-contained HTML document of a discovery.
 //!
-//! [`report::html`] makes one file with its styles and drawings inside: no scripts, nothing loaded
-//! from elsewhere, light or dark as the reader's system asks, and fit to print. [`words`] has the
-//! sentences that page, terminal and [`json`](mod@json) share.
+//! [`report::html`] makes one file with its styles, drawings, data and scripts inside: nothing is loaded
+//! from elsewhere, and without scripts its drawings stand still. Light or dark as the reader's system asks, and fit to
+//! print. [`words`] has the sentences that page, terminal and
+//! [`json`](mod@json) share.
 
+mod front;
 mod html;
 pub mod json;
 mod plot;

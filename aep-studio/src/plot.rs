@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use missing_physics::report::{Curve, Plot};
 
+use crate::front::{self, Named};
 use crate::html::{concat, escape};
 
 mod scale;
@@ -37,8 +38,22 @@ pub(crate) fn figure(plot: &Plot) -> Option<String> {
     figure_with_bands(plot, &[])
 }
 
+/// The same, which scripts leave as it is.
+pub(crate) fn still(plot: &Plot) -> Option<String> {
+    drawn(plot, &[], "")
+}
+
 /// The same with bands behind the curves.
 pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
+    named(plot, bands, &Named::default())
+}
+
+/// The same with what its axis is called besides.
+pub(crate) fn named(plot: &Plot, bands: &[Band], named: &Named) -> Option<String> {
+    drawn(plot, bands, &front::figure(plot, bands, named))
+}
+
+fn drawn(plot: &Plot, bands: &[Band], attributes: &str) -> Option<String> {
     let whole: Vec<&Curve> = plot.curves.iter().filter(|curve| has_points(curve)).collect();
     let curves: Vec<Curve> = whole.iter().map(|curve| cleaned(curve)).collect();
     let edges: Vec<Curve> = bands.iter().flat_map(edges).collect();
@@ -50,7 +65,7 @@ pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
         whole.iter().enumerate().map(|(k, c)| curve(c, colour(c, k), &x, &y)).collect();
     let title = escape(&plot.title);
     Some(format!(
-        "<figure><figcaption>{title}</figcaption>{}\
+        "<figure{attributes}><figcaption>{title}</figcaption>{}\
          <svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=img aria-label=\"{title}\">{}{areas}{drawn}</svg></figure>\n",
         legend(&curves),
         axes(plot, &x, &y),
@@ -110,7 +125,7 @@ fn cleaned(curve: &Curve) -> Curve {
 }
 
 /// The same thing has the same colour in every plot.
-fn colour(curve: &Curve, index: usize) -> &'static str {
+pub(crate) fn colour(curve: &Curve, index: usize) -> &'static str {
     match curve.label.as_str() {
         label if label.contains("measured") => "c0",
         label if label.contains("base") => "c2",

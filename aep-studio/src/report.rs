@@ -3,27 +3,30 @@
 use std::fmt::Write;
 
 use missing_physics::measurement::check::DataCheck;
-use missing_physics::report::Combinations;
+use missing_physics::report::{Combinations, Samples};
 use missing_physics::{Discovery, Thresholds};
 
+use crate::front;
 use crate::html::{escape, section};
-use crate::plot;
 
 mod axes;
 mod compared;
 mod confirmation;
 mod data;
 mod doubts;
+mod effects;
 mod ladder;
 mod missing_force;
 mod parameters;
 mod ranking;
 mod residual;
+mod screen;
 mod verdict;
 mod views;
 mod where_it_fails;
 
 pub use axes::{AxisPage, axes};
+pub use effects::Explained;
 
 /// Where the recording came from and what was asked of it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,26 +41,34 @@ pub struct Source {
     pub thresholds: Thresholds,
     /// What parameters of the last model make together.
     pub together: Combinations,
+    /// The recording and its models sample by sample, for the first screen; empty where the page has none.
+    pub samples: Samples,
+    /// What is known of the effects that the page names.
+    pub effects: Vec<Explained>,
 }
 
 const STYLE: &str = include_str!("report/style.css");
+/// Nothing is loaded: what the page shows is inside it.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 
-/// The page of a discovery: one file, nothing loaded from elsewhere, no scripts.
+/// The page of a discovery: one file, nothing loaded from elsewhere.
 pub fn html(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
     let sections = sections(discovery, source, check);
     page(&format!("What the model lacks: {}", source.name), &sections, discovery, source)
 }
 
 /// What is told of a discovery.
-fn sections(discovery: &Discovery, source: &Source, check: &DataCheck) -> [String; 12] {
+fn sections(discovery: &Discovery, source: &Source, check: &DataCheck) -> [String; 14] {
     [
         verdict::head(discovery, source),
-        ladder::section(discovery),
+        screen::section(discovery, source),
+        ladder::section(discovery, source),
         confirmation::section(discovery),
         confirmation::surrogates(discovery),
+        effects::section(discovery, source),
         where_it_fails::section(discovery),
         residual::section(discovery),
-        curves(discovery),
+        curves(discovery, source),
         ranking::section(discovery, source),
         compared::section(discovery, source),
         parameters::section(discovery, source),
@@ -70,11 +81,12 @@ fn sections(discovery: &Discovery, source: &Source, check: &DataCheck) -> [Strin
 pub fn comparison(discovery: &Discovery, source: &Source, check: &DataCheck) -> String {
     let sections = [
         verdict::plain_head(discovery, source),
+        screen::section(discovery, source),
         views::section(discovery),
         where_it_fails::section(discovery),
         residual::section(discovery),
-        curves(discovery),
-        ladder::section(discovery),
+        curves(discovery, source),
+        ladder::section(discovery, source),
         parameters::section(discovery, source),
         data::section(check, source),
     ];
@@ -91,17 +103,21 @@ fn page_of(title: &str, sections: &[String], foot: &str) -> String {
         "<!doctype html>\n<html lang=en>\n<head><meta charset=utf-8>\
          <meta name=viewport content=\"width=device-width, initial-scale=1\">\
          <meta name=color-scheme content=\"light dark\">\n\
-         <title>{}</title>\n<style>\n{STYLE}</style></head>\n<body><main>\n{}{foot}</main></body></html>\n",
+         <meta http-equiv=Content-Security-Policy content=\"{POLICY}\">\
+         <title>{}</title>\n<style>\n{STYLE}{}</style></head>\n<body><main>\n{}{foot}</main>{}</body></html>\n",
         escape(title),
+        front::STYLE,
         sections.concat(),
+        front::scripts(),
     )
 }
 
-fn curves(discovery: &Discovery) -> String {
-    // The maps have been drawn with their bands.
+fn curves(discovery: &Discovery, source: &Source) -> String {
+    // The maps have been drawn with their bands, and the first screen has what runs over time.
     let drawn = residual::titles(discovery);
-    let plots = discovery.plots.iter().filter(|plot| !drawn.contains(&plot.title));
-    let figures: String = plots.filter_map(plot::figure).collect();
+    let above = if source.samples.time.is_empty() { 0 } else { screen::STILL };
+    let plots = discovery.plots.iter().skip(above).filter(|plot| !drawn.contains(&plot.title));
+    let figures: String = plots.filter_map(|plot| residual::curves(discovery, plot)).collect();
     if figures.is_empty() {
         return String::new();
     }

@@ -32,6 +32,8 @@ pub use summary::{experiment, summary};
 /// What is said of a search that was cut, by Ctrl-C or at the end of its time.
 pub const STOPPED: &str =
     "stopped early: this is what was found until then, and what takes long was left out";
+/// Smallest chance that shifts in time can tell.
+const SMALLEST: f64 = 1.0 / (missing_physics::ahead::chance::SHIFTS as f64 + 1.0);
 /// From this p-value on a finding may well be chance.
 const CHANCE: f64 = 0.05;
 
@@ -188,12 +190,26 @@ pub fn nats(value: f64) -> String {
 
 /// Chance of a gain as large, as shifts in time tell it: they cannot tell less than one over their number.
 pub fn chance(p_value: f64) -> String {
-    const SMALLEST: f64 = 1.0 / (missing_physics::ahead::chance::SHIFTS as f64 + 1.0);
-    if p_value <= SMALLEST * (1.0 + 1e-9) {
+    if is_smallest(p_value) {
         format!("<= {}", self::p_value(SMALLEST))
     } else {
         self::p_value(p_value)
     }
+}
+
+/// Whether a chance is the smallest that shifts in time can tell.
+fn is_smallest(p_value: f64) -> bool {
+    p_value <= SMALLEST * (1.0 + 1e-9)
+}
+
+/// How small a chance can be that shifts in time tell.
+pub fn smallest_chance() -> String {
+    format!(
+        "{} shifts can give no p below {}, which is multiplied by the number of trials that were ranked for each one that was \
+         shifted: where no shift gained as much, that product stands here.",
+        missing_physics::ahead::chance::SHIFTS,
+        p_value(SMALLEST)
+    )
 }
 
 /// Whether the rungs are judged by what they predict one sample ahead.

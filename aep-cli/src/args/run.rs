@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use missing_physics::{Settings, Thresholds};
+use friction_ident::family::{Decides, FrictionFamily};
+use missing_physics::report::Samples;
+use missing_physics::{Fitted, Settings, Thresholds};
 
 use super::EffectNames;
 use crate::failure::Failure;
@@ -121,7 +123,7 @@ pub struct OutputArgs {
     /// Write the results as JSON; `-` for the terminal
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
-    /// Write a report with plots as one HTML file; `-` for the terminal
+    /// Write a report with interactive plots as one HTML file that loads nothing from elsewhere; `-` for the terminal
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
 }
@@ -130,6 +132,11 @@ impl OutputArgs {
     /// Whether standard output belongs to one of the files.
     pub fn own_stdout(&self) -> bool {
         [&self.json, &self.html].into_iter().flatten().any(|path| path.as_os_str() == "-")
+    }
+
+    /// The recording and these models sample by sample, where a page is asked for.
+    pub fn samples(&self, family: &FrictionFamily, models: &[Fitted], decides: Decides) -> Samples {
+        if self.html.is_some() { family.samples(models, decides) } else { Samples::default() }
     }
 }
 

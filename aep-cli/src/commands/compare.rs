@@ -99,6 +99,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         check: &data,
         thresholds: Thresholds::default(),
         together: Combinations::default(),
+        samples: args.results.samples(&family, std::slice::from_ref(&fit.model), Decides::Force),
         more: vec![("models", in_json(&paths, &views))],
     };
     let mut files = report.save(&args.results)?;

@@ -184,6 +184,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         progress.say("predicting every sample");
         points = save_series(path, (&loaded.recording, &family), &discovery)?;
     }
+    if args.results.html.is_some() {
+        progress.say("drawing the report");
+    }
+    let models = steps::ladder(&family, &discovery)?;
+    let samples = args.results.samples(&family, &models, Decides::Prediction);
     drop(progress);
     let report = Report {
         kind: Kind::Discovery,
@@ -192,6 +197,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         check: &data,
         thresholds: settings.thresholds,
         together: friction.clone(),
+        samples,
         more,
     };
     let mut files = report.save(&args.results)?;
@@ -234,10 +240,9 @@ fn save_series(
     (recording, family): (&Recording, &FrictionFamily),
     discovery: &Discovery,
 ) -> Result<String, Failure> {
-    let rungs: Result<Vec<(String, Fitted)>, Failure> = (discovery.ladder.iter().enumerate())
-        .map(|(k, rung)| Ok((series::rung(k, &rung.added), model_of(family, rung)?)))
-        .collect();
-    series::save(path, (recording, family), &rungs?, Decides::Prediction)
+    let names = discovery.ladder.iter().enumerate().map(|(k, rung)| series::rung(k, &rung.added));
+    let rungs: Vec<(String, Fitted)> = names.zip(steps::ladder(family, discovery)?).collect();
+    series::save(path, (recording, family), &rungs, Decides::Prediction)
 }
 
 /// The loop as it went: where the base model failed, what was tried, what was gained.

@@ -94,8 +94,10 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let discovery = diagnosis::comparison(&family, (&before, &after), rungs, args.seed, &|| watch.is_over());
     drop(progress);
     let data = check(&loaded.recording);
+    let models = [before.model.clone(), after.model.clone()];
+    let samples = args.results.samples(&family, &models, Decides::FittedForce);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: Combinations::default(), more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: Combinations::default(), samples, more: Vec::new() };
     let mut files = report.save(&args.results)?;
     output::save(&args.output, &(extended.to_json()? + "\n"))?;
     files += &written("model", &args.output);

@@ -135,8 +135,10 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let friction = family.friction(&fit.model, Decides::FittedForce);
     drop(progress);
     let data = check(&loaded.recording);
+    let models = std::slice::from_ref(&fit.model);
+    let samples = args.results.samples(&family, models, Decides::FittedForce);
     let report =
-        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: friction.clone(), more: Vec::new() };
+        Report { kind: Kind::Comparison, discovery: &discovery, loaded: &loaded, check: &data, thresholds: Thresholds::default(), together: friction.clone(), samples, more: Vec::new() };
     let mut files = report.save(&args.results)?;
     if let Some(path) = &args.output {
         output::save(path, &(model.to_json()? + "\n"))?;

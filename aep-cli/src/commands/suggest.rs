@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use aep_studio::words;
+use friction_ident::family::Decides;
 use missing_physics::{likely, suggest};
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
@@ -80,6 +81,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         proposal = propose(&family, &settings.base, &rivals, path, args.run.seed)?;
     }
     drop(progress);
+    let samples = args.results.samples(&family, &steps::ladder(&family, &discovery)?, Decides::Prediction);
     let data = check(&loaded.recording);
     let more = proposal.more;
     let report = Report {
@@ -89,6 +91,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         check: &data,
         thresholds: settings.thresholds,
         together: Combinations::default(),
+        samples,
         more,
     };
     let files = report.save(&args.results)?;

@@ -13,7 +13,8 @@ pub(super) fn section(discovery: &Discovery) -> String {
     let headings: Vec<String> = words::confirmation_headings(discovery)
         .iter()
         .map(|heading| match heading.as_str() {
-            "rung" | "holds" => heading.clone(),
+            "rung" => "model".to_owned(),
+            "holds" => heading.clone(),
             number => format!("#{number}"),
         })
         .collect();

@@ -4,26 +4,40 @@ use missing_physics::Discovery;
 use missing_physics::report::{NamedError, Rung, SplitError};
 
 use crate::html::{self, escape, table};
+use crate::report::Source;
 use crate::words::{self, ErrorName};
 
-const LEAD: &str = "Each rung is one effect more. What counts is the error on held-out data, \
+const LEAD: &str = "Each model has one effect more. What counts is the error on held-out data, \
     which took no part in the fit; the line marks the noise floor, as estimated from the data.";
 
-const AHEAD: &str = "Each rung is one effect more. What counts is the error of predictions one sample ahead, in \
-    multiples of what the sensors alone make; the line marks what they make. The errors on held-out data \
-    beside it are views that decide nothing.";
+const AHEAD: &str = "Each model has one effect more than the one above it. What counts is the error of predictions one sample \
+    ahead, in multiples of what the sensors alone make; the line marks what they make. The gain says how much likelier the \
+    effect makes measurements that took no part in its fit, as a natural logarithm (nats). p is the chance of as large a gain \
+    where the errors are shifted in time, so that they have nothing to do with the motion. The errors on held-out data beside \
+    it are views that decide nothing.";
+
+/// Title of the section.
+const TITLE: &str = "The models, one effect more each";
 
 /// The section of the ladder.
-pub(super) fn section(discovery: &Discovery) -> String {
-    if words::has_budget(discovery) {
-        let body = bars_ahead(discovery) + &numbers_ahead(discovery);
-        return html::section("ladder", "The ladder", AHEAD, &body);
-    }
-    let Some(name) = words::main_error(discovery) else {
+pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
+    // Where there is a first screen the bars stand there.
+    let bars = if source.samples.time.is_empty() { bars(discovery) } else { String::new() };
+    let ahead = words::has_budget(discovery);
+    if !ahead && words::main_error(discovery).is_none() {
         return String::new();
-    };
-    let body = format!("{}{}", bars(discovery, &name), numbers(discovery));
-    html::section("ladder", "The ladder", LEAD, &body)
+    }
+    let (lead, numbers) =
+        if ahead { (AHEAD, numbers_ahead(discovery, source)) } else { (LEAD, numbers(discovery)) };
+    html::section("ladder", TITLE, lead, &(bars + &numbers))
+}
+
+/// The errors of the models as bars that fall to what the sensors make or to the noise floor.
+pub(super) fn bars(discovery: &Discovery) -> String {
+    if words::has_budget(discovery) {
+        return bars_ahead(discovery);
+    }
+    words::main_error(discovery).map(|name| bars_held_out(discovery, &name)).unwrap_or_default()
 }
 
 /// Prediction errors as bars.
@@ -48,9 +62,9 @@ fn bars_ahead(discovery: &Discovery) -> String {
     format!("{key}<div class=ladder>{rows}</div>")
 }
 
-fn numbers_ahead(discovery: &Discovery) -> String {
+fn numbers_ahead(discovery: &Discovery, source: &Source) -> String {
     let names = words::views_beside(discovery);
-    let fixed = ["Rung", "#Prediction error (× sensors)", "#Gain (nats)", "#p-value"];
+    let fixed = ["Model", "#Prediction error (× sensors)", "#Gain (nats)", "#p"];
     let mut headings: Vec<String> = fixed.map(str::to_owned).to_vec();
     headings.extend(names.iter().map(|name| format!("#{} (held out)", name.heading())));
     let dash = || "-".to_owned();
@@ -64,14 +78,21 @@ fn numbers_ahead(discovery: &Discovery) -> String {
         cells.extend(names.iter().map(|name| {
             rung.error.get(&name.key).map_or_else(dash, |error| name.value(error.validation))
         }));
-        cells.iter().map(|cell| escape(cell)).collect()
+        let mut cells: Vec<String> = cells.iter().map(|cell| escape(cell)).collect();
+        cells[0] = super::effects::model(rung, source);
+        cells
     };
     let rows: Vec<Vec<String>> = discovery.ladder.iter().map(row).collect();
     let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
-    table(&headings, &rows)
+    let smallest = if discovery.ladder.iter().any(|rung| rung.p_value.is_some()) {
+        format!("<p class=lead>{}</p>", escape(&words::smallest_chance()))
+    } else {
+        String::new()
+    };
+    table(&headings, &rows) + &smallest
 }
 
-fn bars(discovery: &Discovery, name: &ErrorName) -> String {
+fn bars_held_out(discovery: &Discovery, name: &ErrorName) -> String {
     let errors: Vec<(&Rung, SplitError)> = discovery
         .ladder
         .iter()
@@ -115,7 +136,7 @@ fn row(
 
 fn numbers(discovery: &Discovery) -> String {
     let names = words::errors(discovery);
-    let mut headings = vec!["Rung".to_owned()];
+    let mut headings = vec!["Model".to_owned()];
     for name in &names {
         headings.push(format!("#{} (held out)", name.heading()));
         headings.push("#fitted".to_owned());

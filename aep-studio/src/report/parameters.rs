@@ -10,8 +10,8 @@ use crate::html::{self, escape, table};
 use crate::report::Source;
 use crate::words;
 
-const LEAD: &str = "Values of the last model with their 95 % intervals, then the values on each \
-    rung: a parameter that moves when an effect is added had been standing in for it.";
+const LEAD: &str = "Values of the last model with their 95 % intervals, then the values in each \
+    model: a parameter that moves when an effect is added had been standing in for it.";
 
 /// The section of the parameters.
 pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
@@ -96,5 +96,5 @@ fn history(ladder: &[Rung]) -> String {
         })
         .collect();
     let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
-    format!("<details><summary>On every rung</summary>{}</details>", table(&headings, &rows))
+    format!("<details><summary>In every model</summary>{}</details>", table(&headings, &rows))
 }

@@ -2,20 +2,20 @@
 
 use missing_physics::Discovery;
 use missing_physics::measurement::quantity::percent;
-use missing_physics::report::Candidate;
+use missing_physics::report::{Candidate, Decision};
 
 use crate::html::{self, bar, escape, table};
-use crate::report::Source;
+use crate::report::{Source, effects};
 use crate::words;
 
-const LEAD: &str = "Every effect of the library, tried on what the model of the rung leaves. Gain: share of \
+const LEAD: &str = "Every effect of the library, tried on what the model before it leaves. Gain: share of \
     the held-out squared error it would remove. p-value: chance of as large a gain by any effect \
     where none is missing.";
 
-const AHEAD: &str = "Every effect of the library, beside the model of the rung. Gain: held-out log-likelihood of the \
+const AHEAD: &str = "Every effect of the library, beside the model so far. Gain: held-out log-likelihood of the \
     prediction errors, in nats (to first order where the effect promised too little to be fitted). Share: \
-    of the squared prediction error. Chance: of as large a gain by any effect where the errors are shifted \
-    in time against the motion.";
+    of the squared prediction error. p: chance of as large a gain by any effect where the errors are shifted \
+    in time, so that they have nothing to do with the motion.";
 
 /// The section of the rankings, one foldable list per rung.
 pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
@@ -51,13 +51,25 @@ fn list(
     };
     let model = match before {
         _ if rung == 0 => "For the base model".to_owned(),
-        [] => format!("Rung {}", rung + 1),
+        [] => format!("After {rung} effects"),
         effects => format!("After {}", escape(&effects.join(" + "))),
     };
     let ahead = is_ahead(candidates);
-    let rows: Vec<Vec<String>> = candidates.iter().map(|c| row(c, added, ahead)).collect();
+    let rows = candidates.iter().map(|candidate| {
+        let mut cells = row(candidate, added, ahead);
+        cells[0] = effects::linked(&candidate.effect, source);
+        if added.contains(&candidate.effect) {
+            cells[0] = format!("<b>{}</b>", cells[0]);
+        }
+        if ahead {
+            let said = came_of((discovery, source), rung, candidate);
+            cells.push(escape(&said));
+        }
+        cells
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
     let headings: &[&str] = if ahead {
-        &["Effect", "Size", "#Gain, nats", "", "#Share", "#Chance"]
+        &["Effect", "Size", "#Gain, nats", "", "#Share", "#p", "What came of it"]
     } else {
         &["Effect", "Size", "", "#Gain", "#p-value"]
     };
@@ -67,6 +79,24 @@ fn list(
     format!(
         "<details{open}><summary>{model}: {outcome}</summary>{why}{}</details>",
         table(headings, &rows)
+    )
+}
+
+/// What the comparison of a candidate with the model so far came to.
+fn came_of(
+    (discovery, source): (&Discovery, &Source),
+    rung: usize,
+    candidate: &Candidate,
+) -> String {
+    let adds = |decision: &&Decision| {
+        let more = decision.candidate.iter().filter(|e| !decision.compared_with.contains(e));
+        decision.rung == rung + 1 && more.eq([&candidate.effect])
+    };
+    // The last word counts.
+    let decision = discovery.decisions.iter().rev().find(adds);
+    decision.map_or_else(
+        || "not among those that were compared".to_owned(),
+        |decision| words::outcome(discovery, decision, &source.thresholds),
     )
 }
 

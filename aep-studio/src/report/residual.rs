@@ -5,12 +5,15 @@ use missing_physics::Discovery;
 use missing_physics::measurement::quantity::quantity;
 use missing_physics::report::{Curve, Diagnosis, Plot, ResidualMap};
 
+use crate::front::Named;
 use crate::html::{self, concat, escape, table};
 use crate::plot::{self, Band};
 use crate::words;
 
 const LEAD: &str = "Tests of what the last model leaves, its mean along the coordinates with 95 % bands \
     (which know that neighbours in time err together), and what in it is periodic.";
+/// How titles of spectra begin.
+const SPECTRUM: &str = "Spectrum of the residual over ";
 /// Most maps that are drawn.
 const MAPS: usize = 6;
 
@@ -98,6 +101,23 @@ fn figure(discovery: &Discovery, base: Option<&ResidualMap>, last: &ResidualMap)
     };
     let bands: Vec<Band> = shown.iter().map(|(label, map)| band(label, map)).collect();
     plot::figure_with_bands(&plot, &bands)
+}
+
+/// A plot of the engine; spectra with their lines by name.
+pub(super) fn curves(discovery: &Discovery, plot: &Plot) -> Option<String> {
+    let Some(along) = plot.title.strip_prefix(SPECTRUM) else { return plot::figure(plot) };
+    let diagnosis = discovery.diagnosis.as_ref()?;
+    let unit = if along == "time" {
+        Some("s")
+    } else {
+        plot.x_label.split_once("1/").map(|(_, unit)| unit)
+    };
+    let lines = diagnosis.lines.iter().filter(|line| line.along == along && line.period > 0.0);
+    let named = Named {
+        period_unit: unit.map(ToOwned::to_owned),
+        lines: lines.map(|line| (1.0 / line.period, words::line(line))).collect(),
+    };
+    plot::named(plot, &[], &named)
 }
 
 /// The means of a map as a curve.

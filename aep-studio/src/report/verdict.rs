@@ -4,7 +4,7 @@ use missing_physics::Discovery;
 use missing_physics::report::{Budget, Verdict};
 
 use crate::html::{concat, escape};
-use crate::report::Source;
+use crate::report::{Source, effects};
 use crate::words;
 
 /// Head of the page: verdict, summary, and the numbers that carry it.
@@ -16,11 +16,17 @@ pub(super) fn head(discovery: &Discovery, source: &Source) -> String {
     format!(
         "<header class={tone}><p class=file>{}</p><h1>{}</h1>{}<p class=summary>{}</p>{}</header>\n",
         escape(&source.name),
-        headline(discovery),
-        completeness(discovery),
+        headline(discovery, source),
+        // The summary beside a first screen says it, too.
+        if source.samples.time.is_empty() { completeness(discovery) } else { String::new() },
         escape(&words::summary(discovery)),
-        numbers(discovery),
+        beside(discovery, source),
     )
+}
+
+/// The numbers, where no first screen has them.
+fn beside(discovery: &Discovery, source: &Source) -> String {
+    if source.samples.time.is_empty() { numbers(discovery) } else { String::new() }
 }
 
 /// Head of a page without a verdict: the model and its errors.
@@ -31,7 +37,7 @@ pub(super) fn plain_head(discovery: &Discovery, source: &Source) -> String {
          <p class=summary>{}</p>{}</header>\n",
         escape(&source.name),
         escape(&effects),
-        numbers(discovery),
+        beside(discovery, source),
     )
 }
 
@@ -40,13 +46,16 @@ fn is_doubtful(discovery: &Discovery) -> bool {
     words::is_cut(discovery) || discovery.budget.is_some_and(|budget| !budget.complete)
 }
 
-fn headline(discovery: &Discovery) -> String {
+fn headline(discovery: &Discovery, source: &Source) -> String {
     let verdict = words::verdict(discovery);
     if discovery.added.is_empty() {
         return escape(verdict);
     }
     let chips = concat(
-        discovery.added.iter().map(|effect| format!("<span class=chip>{}</span>", escape(effect))),
+        discovery
+            .added
+            .iter()
+            .map(|effect| format!("<span class=chip>{}</span>", effects::linked(effect, source))),
     );
     format!("{}: {chips}", escape(verdict))
 }

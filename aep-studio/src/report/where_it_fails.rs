@@ -68,7 +68,10 @@ fn dependences(places: &[Where]) -> String {
     let others = if others.is_empty() {
         String::new()
     } else {
-        format!("<details><summary>It may be chance</summary>{}</details>", listed(&others))
+        format!(
+            "<details><summary>Dependences that chance alone makes more often than once in 20 (p above 0.05)</summary>{}</details>",
+            listed(&others)
+        )
     };
     listed(&likely) + &others
 }

@@ -6,6 +6,33 @@ use crate::effects::{Apart, Effect};
 const USUAL: &str = "record constant speeds from 0.5 mm/s to the highest in both directions over the whole stroke, and small \
                      reversals at several rates.";
 
+/// Effects that look like another one in ordinary motion, and what tells them apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alike {
+    /// The other effects.
+    pub effects: Vec<&'static str>,
+    /// The experiment that tells them apart, in words.
+    pub experiment: &'static str,
+}
+
+/// What the effect called `name` is mistaken for, by what `effects` say of themselves; a form is what its effect is.
+pub fn mistaken_for(effects: &[&dyn Effect], name: &str) -> Vec<Alike> {
+    let main = name.split(':').next().unwrap_or_default();
+    let all = effects.iter().flat_map(|effect| {
+        let of = effect.about().name;
+        effect.told_apart().iter().map(move |apart| (of, apart))
+    });
+    let named = all.filter(|(of, apart)| *of == main || apart.from.contains(&main));
+    let alike = named.map(|(of, apart)| Alike {
+        effects: std::iter::once(of)
+            .chain(apart.from.iter().copied())
+            .filter(|n| *n != main)
+            .collect(),
+        experiment: apart.experiment,
+    });
+    alike.collect()
+}
+
 /// The experiment that tells the effects called `terms` apart, by what `effects` say of themselves: the one for most of
 /// them.
 pub fn experiment(effects: &[&dyn Effect], terms: &[String]) -> String {
@@ -52,6 +79,14 @@ mod tests {
         fn told_apart(&self) -> &'static [Apart] {
             &[Apart { from: &["ripple"], experiment: "turn it off" }]
         }
+    }
+
+    #[test]
+    fn an_effect_is_mistaken_for_others_and_never_for_itself() {
+        let alike = mistaken_for(ALL, "stribeck:gaussian");
+        assert!(alike.iter().any(|alike| alike.effects.contains(&"presliding")), "{alike:?}");
+        assert!(alike.iter().all(|alike| !alike.effects.contains(&"stribeck")));
+        assert!(mistaken_for(ALL, "drift").is_empty());
     }
 
     #[test]

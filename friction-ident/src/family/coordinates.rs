@@ -84,7 +84,7 @@ pub fn motion(p: &Prepared) -> Vec<Vec<f64>> {
 }
 
 /// Distance travelled since the direction last changed, sample by sample.
-fn since_reversal(p: &Prepared) -> Vec<f64> {
+pub(super) fn since_reversal(p: &Prepared) -> Vec<f64> {
     let mut since = vec![0.0; p.position.len()];
     for range in &p.segments {
         let (mut from, mut sign) = (p.position[range.start], 0.0);

@@ -15,12 +15,14 @@ mod full_rate;
 mod generic;
 mod given;
 mod hold;
+mod law;
 mod limits;
 mod own;
 mod plots;
 mod points;
 mod preparation;
 mod regimes;
+mod samples;
 mod surrogates;
 mod sweep;
 mod views;
@@ -36,6 +38,7 @@ use missing_physics::{ComparedQuantity, Coordinate, Fitted, ModelFamily, Recordi
 
 use rayon::prelude::*;
 
+pub use apart::{Alike, mistaken_for};
 pub use hold::HoldChoice;
 pub use points::{Decides, ModelPoints, Points};
 pub use preparation::{PreparationError, Prepared};

@@ -50,12 +50,14 @@ impl FrictionFamily {
     /// The recording point by point, with what `models` predict. Where the data hardly tell what the force does between
     /// samples, it is read in the way in which the last model predicts better, as a search reads it.
     pub fn points(&self, models: &[Fitted], decides: Decides) -> Points {
-        let last = models.last();
+        self.as_read_by(models.last()).points_as_read(models, decides)
+    }
+
+    /// The family with the force between samples read in the way in which a model predicts better.
+    pub(super) fn as_read_by(&self, last: Option<&Fitted>) -> &Self {
         match (&self.other_hold, last) {
-            (Some(other), Some(last)) if other.size(last) < self.size(last) => {
-                other.points_as_read(models, decides)
-            }
-            _ => self.points_as_read(models, decides),
+            (Some(other), Some(last)) if other.size(last) < self.size(last) => other,
+            _ => self,
         }
     }
 
@@ -69,14 +71,10 @@ impl FrictionFamily {
         missing_physics::ahead::statistics::rms(&errors, f64::INFINITY)
     }
 
-    fn points_as_read(&self, models: &[Fitted], decides: Decides) -> Points {
+    pub(super) fn points_as_read(&self, models: &[Fitted], decides: Decides) -> Points {
         let p = &self.prepared;
         let recording = &self.recording;
-        let near: Vec<usize> = (recording.segments().iter().enumerate())
-            .flat_map(|(piece, range)| {
-                range.clone().map(move |k| p.nearest(piece, recording.time()[k]))
-            })
-            .collect();
+        let near = self.nearest_prepared();
         let here = |values: &[f64]| -> Vec<f64> { near.iter().map(|k| values[*k]).collect() };
         let force = here(&p.compare_everywhere(&p.force));
         let each = models.iter().map(|model| ModelPoints {
@@ -96,6 +94,16 @@ impl FrictionFamily {
         Points { piece, compared_force: force, regime, left_out, models }
     }
 
+    /// The sample of the prepared motion next to each sample of the recording.
+    pub(super) fn nearest_prepared(&self) -> Vec<usize> {
+        let (p, recording) = (&self.prepared, &self.recording);
+        let pieces = recording.segments().iter().enumerate();
+        let near = pieces.flat_map(|(piece, range)| {
+            range.clone().map(move |k| p.nearest(piece, recording.time()[k]))
+        });
+        near.collect()
+    }
+
     /// The position that a model shows one sample ahead.
     fn shown(&self, model: &Fitted) -> Vec<f64> {
         let (Some(ahead), Some(view)) = (&self.ahead, self.ahead()) else { return Vec::new() };
@@ -107,7 +115,7 @@ impl FrictionFamily {
         )
     }
 
-    fn left_out_of_forces(
+    pub(super) fn left_out_of_forces(
         &self,
         near: &[usize],
         force: &[f64],

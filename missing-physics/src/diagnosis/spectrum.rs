@@ -131,7 +131,7 @@ impl<'a> Spectrum<'a> {
             y_label: format!("{quantity} amplitude / {unit}"),
             curves: vec![
                 curve("last model", &amplitude),
-                curve("called a line from here on", &needed),
+                curve("from here on more than chance (1 in 100 spectra of noise)", &needed),
             ],
         }
     }

@@ -8,7 +8,7 @@ use aep_data::{Axes, Loaded, PLACE};
 use aep_studio::report::AxisPage;
 use aep_studio::words::{AXES_HEADINGS, AxisResult, axis_row};
 use missing_physics::measurement::check::{DataCheck, check};
-use missing_physics::report::Combinations;
+use missing_physics::report::{Combinations, Samples};
 use missing_physics::{Discovery, discover};
 use serde_json::{Value, json};
 
@@ -209,6 +209,7 @@ fn search(args: &Args, axis: &Axis) -> Result<Searched, Failure> {
         check: &axis.check,
         thresholds: settings.thresholds,
         together: friction.clone(),
+        samples: Samples::default(),
         more: Vec::new(),
     };
     let json = report.json()?;
