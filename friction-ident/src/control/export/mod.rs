@@ -3,7 +3,6 @@
 //! Four files: header, source, test vectors (CSV) and a small program that runs the vectors. The source
 //! repeats the arithmetic of [`Compensator::force`] operation by operation.
 
-mod laws;
 mod text;
 
 use std::fmt::Write as _;

@@ -4,17 +4,20 @@ use crate::model::Term;
 
 /// What a term adds, in C99; `{name}` stands for the constant of the parameter `name`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Law {
-    /// Statements that add to `force`, of `x` (position) and `v` (velocity).
+pub(crate) struct Law {
+    /// Statements that add to `force`, of `x` (position), `v` (velocity) and `t` (time).
     pub smooth: &'static str,
+    /// Statements that add to `damping`, the slope of `force` against the velocity, of the same.
+    pub damping: &'static str,
     /// Statements that add to `level`, of `x`, `s` (direction), `w` (the velocity that the level
-    /// follows), `dwell` and `bond`.
+    /// follows), `dwell` and `bond`; what no compensator acts on also of `t`, `drive` (force of the
+    /// drive) and `a` (acceleration).
     pub level: &'static str,
     /// Expression of `w`: the share that is left of the static hump.
     pub hump: &'static str,
 }
 
-const NONE: Law = Law { smooth: "", level: "", hump: "" };
+const NONE: Law = Law { smooth: "", damping: "", level: "", hump: "" };
 
 /// A sum of cosines over the stroke, and more terms of `u`.
 macro_rules! profile {
@@ -105,14 +108,19 @@ const FREE_SHARE: &str = concat!(
 );
 
 /// The law of a term; none where there is none in C.
-pub(super) fn law(term: &Term) -> Option<Law> {
+pub(crate) fn law(term: &Term) -> Option<Law> {
     Some(match term.name() {
         "coulomb" => Law { level: "level += {F_C};", ..NONE },
-        "viscous" => Law { smooth: "force += {F_v} * v;", ..NONE },
-        "offset" => Law { smooth: "force += {F_0};", ..NONE },
-        "asymmetry" => {
-            Law { smooth: "force += {dF_v} * fabs(v);", level: "level += {dF_C} * s;", ..NONE }
+        "viscous" => {
+            Law { smooth: "force += {F_v} * v;", damping: "damping += {F_v};", ..NONE }
         }
+        "offset" => Law { smooth: "force += {F_0};", ..NONE },
+        "asymmetry" => Law {
+            smooth: "force += {dF_v} * fabs(v);",
+            damping: "damping += {dF_v} * (double)((v > 0.0) - (v < 0.0));",
+            level: "level += {dF_C} * s;",
+            ..NONE
+        },
         "stribeck" => Law {
             level: "level += {dF} * bond * ({v_s} * {v_s}) / ({v_s} * {v_s} + w * w);",
             hump: "({v_s} * {v_s}) / ({v_s} * {v_s} + w * w)",
@@ -204,13 +212,56 @@ pub(super) fn law(term: &Term) -> Option<Law> {
         },
         "viscous-stroke" => Law {
             smooth: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "force += sum * v;"),
+            damping: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "damping += sum;"),
             ..NONE
         },
         "spring" => Law { smooth: "force += {k} * (x - {x_0});", ..NONE },
         "gravity-pendulum" => Law { smooth: "force += {M} * sin(x - {q_0});", ..NONE },
-        "quadratic-drag" => Law { smooth: "force += {c} * v * fabs(v);", ..NONE },
-        "shear-thinning" => Law { smooth: "force += {dF} * tanh(v / {v_n});", ..NONE },
+        "quadratic-drag" => Law {
+            smooth: "force += {c} * v * fabs(v);",
+            damping: "damping += {c} * fabs(v);",
+            ..NONE
+        },
+        "shear-thinning" => Law {
+            smooth: "force += {dF} * tanh(v / {v_n});",
+            damping: "{
+    const double part = tanh(v / {v_n});
+    damping += {dF} * (1.0 - part * part) / {v_n};
+}",
+            ..NONE
+        },
+        "load-friction" => Law { level: "level += {mu} * fabs(drive);", ..NONE },
+        "load-friction:inertia" => Law { level: "level += {c} * fabs(a);", ..NONE },
+        "load-friction:both" => {
+            Law { level: "level += {mu} * fabs(drive) + {c} * fabs(a);", ..NONE }
+        }
+        "drift" => Law {
+            smooth: "force += {dF_v} * exp(-t / {tau}) * v;",
+            damping: "damping += {dF_v} * exp(-t / {tau});",
+            level: "level += {dF_C} * exp(-t / {tau});",
+            ..NONE
+        },
         "frictional-memory" | "frictional-memory:lag" | "rising-static-friction:bond" => NONE,
         _ => return None,
     })
+}
+
+/// The constant of a parameter.
+pub(crate) fn constant(effect: &str, parameter: &str) -> String {
+    let name = format!("{effect}_{parameter}").to_uppercase();
+    // Symbols such as F_c and F_C differ in their case only where they belong to one effect.
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
+}
+
+/// A law with the constants of a term in place of its parameters.
+pub(crate) fn filled(term: &Term, law: &str) -> String {
+    let parameters = term.effect().about().parameters;
+    parameters.iter().fold(law.to_owned(), |law, parameter| {
+        law.replace(&format!("{{{}}}", parameter.name), &constant(term.name(), parameter.name))
+    })
+}
+
+/// A number that C reads back to the bit.
+pub(crate) fn number(value: f64) -> String {
+    if value < 0.0 { format!("({value:e})") } else { format!("{value:e}") }
 }
