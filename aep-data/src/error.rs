@@ -134,6 +134,17 @@ pub enum Problem {
         /// What its reader says.
         what: String,
     },
+    /// A topic of an MCAP file that cannot be chosen.
+    #[error("{}", topics(.wanted.as_deref(), .present))]
+    Topic {
+        /// The topic that was asked for.
+        wanted: Option<String>,
+        /// Topics with joints.
+        present: Vec<String>,
+    },
+    /// A topic was asked for in a file that has none.
+    #[error("this file has no topics; MCAP files do")]
+    NoTopics,
     /// A regressor that is nothing.
     #[error("the regressor '{formula}' is 0 at every sample: no factor makes a force of it")]
     Nothing {
@@ -245,6 +256,8 @@ pub enum Problem {
         name: String,
         /// Its MATLAB class.
         class: &'static str,
+        /// A field of it that is one, where it is a structure with such.
+        field: Option<String>,
     },
     /// A matrix where a vector is wanted.
     #[error("'{name}' is {rows} x {columns}, not a vector")]
@@ -392,6 +405,16 @@ fn wanted(column: Option<&str>) -> String {
     column.map(|name| format!(" called '{name}'")).unwrap_or_default()
 }
 
+fn topics(wanted: Option<&str>, present: &[String]) -> String {
+    match (wanted, present) {
+        (_, []) => "the file has no topic of sensor_msgs/JointState".to_owned(),
+        (Some(wanted), _) => {
+            format!("there is no topic '{wanted}' with joints; there are: {}", listed(present))
+        }
+        (None, _) => format!("several topics have joints: {}", listed(present)),
+    }
+}
+
 fn listed(names: &[String]) -> String {
     const SHOWN: usize = 20;
     match names.len() {
@@ -418,6 +441,11 @@ impl Problem {
                 format!("mend it at the mark; 'aep effects --formula' lists all functions\n{shown}")
             }
             Self::Damaged { .. } => "write it once more, or as CSV with time_s,force_N,position_m".to_owned(),
+            Self::Topic { present, .. } if present.is_empty() => {
+                "record a topic of sensor_msgs/JointState, or write the signals as CSV with time_s,force_N,position_m".to_owned()
+            }
+            Self::Topic { present, .. } => format!("choose one of them: --topic {}", present[0]),
+            Self::NoTopics => "leave --topic out".to_owned(),
             Self::TooManyMissing { .. } => {
                 "fill the column, cut the file (--from, --to), or leave the column out".to_owned()
             }
@@ -458,6 +486,7 @@ impl Problem {
             Self::MissingColumn { role, nearest, .. } | Self::MissingVariable { role, nearest, .. } => {
                 missing_hint(role, nearest.as_deref(), &toml)
             }
+            Self::NotNumeric { field: Some(field), .. } => format!("name a field of it, such as '{field}'"),
             Self::NotNumeric { .. } => {
                 "in MATLAB, save the fields as plain vectors: t = s.t; save('data.mat', 't', '-v7')"
                     .to_owned()

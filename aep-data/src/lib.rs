@@ -1,4 +1,4 @@
-//! Recordings from files: CSV, MATLAB, HDF5, `.npz`, Parquet and Excel, with column mapping, units and errors that say how to
+//! Recordings from files: CSV, MATLAB, HDF5, `.npz`, Parquet, Excel and MCAP, with column mapping, units and errors that say how to
 //! mend them.
 //!
 //! A CSV with the header `time_s,force_N,position_m` needs nothing else. Other units are recognised
@@ -34,11 +34,14 @@ mod error;
 mod expression;
 mod hdf5_table;
 mod header;
+mod joint_state;
 mod kept;
 mod layouts;
 mod mapping;
+mod mat_fields;
 mod mat_index;
 mod mat_table;
+mod mcap_table;
 mod memory_table;
 mod npz;
 mod parquet_table;
@@ -115,11 +118,11 @@ fn open(path: &Path, mapping: &Mapping) -> Result<(Box<dyn Table>, Mapping), Dat
             .lock()
             .read_to_end(&mut bytes)
             .map_err(|error| DataError::new(name, unreadable(&error)))?;
-        return Ok((table(name, bytes)?, mapping.clone()));
+        return Ok((table(name, bytes, mapping)?, mapping.clone()));
     }
     let bytes = std::fs::read(path).map_err(|error| DataError::new(path, unreadable(&error)))?;
     let mapping = mapping.or(&Mapping::beside(path)?);
-    Ok((table(path, bytes)?, mapping))
+    Ok((table(path, bytes, &mapping)?, mapping))
 }
 
 /// The recording in `bytes`, the content of a file called `path`; its format is told by the bytes.
@@ -127,14 +130,20 @@ fn open(path: &Path, mapping: &Mapping) -> Result<(Box<dyn Table>, Mapping), Dat
 /// # Errors
 /// Like [`load`].
 pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, DataError> {
-    assemble::assemble(path, &*table(path, bytes)?, mapping)
+    assemble::assemble(path, &*table(path, bytes, mapping)?, mapping)
 }
 
 /// The columns in `bytes`, the content of a file called `path`.
-fn table(path: &Path, bytes: Vec<u8>) -> Result<Box<dyn Table>, DataError> {
+fn table(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Box<dyn Table>, DataError> {
     let named_mat = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mat"));
     if bytes.is_empty() {
         return Err(DataError::new(path, Problem::Empty));
+    }
+    if mcap_table::is_mcap(&bytes) {
+        return Ok(Box::new(mcap_table::read(path, &bytes, mapping.topic.as_deref())?));
+    }
+    if mapping.topic.is_some() {
+        return Err(DataError::new(path, Problem::NoTopics));
     }
     if mat_index::is_hdf5(&bytes) {
         return Ok(Box::new(hdf5_table::Hdf5Table::parse(path, bytes)?));
@@ -168,7 +177,7 @@ fn unreadable(error: &std::io::Error) -> Problem {
 }
 
 /// Endings of files that are read.
-const FORMATS: [&str; 6] = ["csv", "mat", "parquet", "npz", "xlsx", "h5"];
+const FORMATS: [&str; 7] = ["csv", "mat", "parquet", "npz", "xlsx", "h5", "mcap"];
 
 /// The files of a folder that could be recordings, sorted.
 fn data_files(folder: &Path) -> Vec<String> {

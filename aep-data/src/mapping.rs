@@ -84,6 +84,8 @@ pub struct Mapping {
     pub columns: Vec<String>,
     /// Sampling interval in seconds, for files without a time.
     pub interval_s: Option<f64>,
+    /// Topic of an MCAP file, where several have joints.
+    pub topic: Option<String>,
     /// How the input acts between samples: `zero-order` or `sampled`.
     #[serde(deserialize_with = "hold")]
     pub hold: Option<Hold>,
@@ -122,6 +124,7 @@ impl Mapping {
             axes: if self.axes.is_empty() { other.axes.clone() } else { self.axes.clone() },
             columns: self.columns.iter().chain(&other.columns).cloned().collect(),
             interval_s: self.interval_s.or(other.interval_s),
+            topic: self.topic.clone().or_else(|| other.topic.clone()),
             hold: self.hold.or(other.hold),
         }
     }

@@ -1,8 +1,8 @@
 //! The table of contents of a MATLAB v5 file.
 //!
 //! The reader of arrays, `matfile`, skips structures, cells and text without a word and gives up on
-//! a whole file for one object it does not know. So the variables are listed here first, and only
-//! the numeric ones that are needed go to it, one at a time.
+//! a whole file for one object it does not know. So the variables are listed here first, fields of structures among
+//! them (`mat_fields.rs`), and only the numeric ones that are needed go to it, one at a time.
 //!
 //! Layout: 128 bytes of header; then one element a variable, a tag (type, size) and its body, which
 //! is a matrix (14) or a matrix compressed by zlib (15). A matrix begins with its flags (class in
@@ -11,8 +11,11 @@
 
 use std::io::Read;
 use std::ops::Range;
+use std::sync::Arc;
 
 use libflate::zlib::Decoder;
+
+use crate::mat_fields;
 
 /// Length of the file's header.
 pub(crate) const HEADER: usize = 128;
@@ -32,8 +35,10 @@ pub(crate) struct Entry {
     pub numeric: bool,
     /// Dimensions.
     pub size: Vec<usize>,
-    /// Where its element lies in the file, tag included.
+    /// Where its element lies, tag included: in the file, or in `within`.
     pub bytes: Range<usize>,
+    /// The structure that it is a field of, unpacked.
+    pub within: Option<Arc<Vec<u8>>>,
 }
 
 impl Entry {
@@ -61,7 +66,7 @@ pub(crate) fn is_hdf5(bytes: &[u8]) -> bool {
 
 /// Lists the variables of a v5 file, or says where it is damaged.
 pub(crate) fn list(bytes: &[u8]) -> Result<Vec<Entry>, String> {
-    let order = if &bytes[126..128] == b"IM" { Order::Little } else { Order::Big };
+    let order = Order::of(bytes);
     let mut entries = Vec::new();
     let mut at = HEADER;
     // A few bytes of padding at the very end are no element.
@@ -85,18 +90,32 @@ pub(crate) fn list(bytes: &[u8]) -> Result<Vec<Entry>, String> {
     }
     // The data of objects are stored without a name; nobody could ask for them.
     entries.retain(|entry| !entry.name.is_empty());
-    Ok(entries)
+    Ok(mat_fields::spread(order, bytes, entries))
 }
 
+/// Order of the bytes of a number.
 #[derive(Clone, Copy)]
-enum Order {
+pub(crate) enum Order {
     Little,
     Big,
 }
 
 impl Order {
-    fn word(self, bytes: &[u8], at: usize) -> Option<u32> {
-        let word: [u8; 4] = bytes.get(at..at + 4)?.try_into().ok()?;
+    /// The order that the header of a v5 file states.
+    pub(crate) fn of(header: &[u8]) -> Self {
+        if header.get(126..128) == Some(b"IM") { Self::Little } else { Self::Big }
+    }
+
+    /// The element of the text "q", type and size in one word.
+    pub(crate) fn tag_of_a_letter(self) -> [u8; 8] {
+        match self {
+            Self::Little => [1, 0, 1, 0, b'q', 0, 0, 0],
+            Self::Big => [0, 1, 0, 1, b'q', 0, 0, 0],
+        }
+    }
+
+    pub(crate) fn word(self, bytes: &[u8], at: usize) -> Option<u32> {
+        let word: [u8; 4] = bytes.get(at..at.checked_add(4)?)?.try_into().ok()?;
         Some(match self {
             Self::Little => u32::from_le_bytes(word),
             Self::Big => u32::from_be_bytes(word),
@@ -113,24 +132,30 @@ fn inflate_head(content: &[u8]) -> Result<Vec<u8>, String> {
 }
 
 fn entry(order: Order, head: &[u8], bytes: Range<usize>) -> Option<Entry> {
-    let (flags, at) = element(order, head, 0)?;
+    head_of(order, head, 0).map(|(entry, _)| Entry { bytes, ..entry })
+}
+
+/// What the body of a matrix that begins at `at` says of itself, and where its content begins.
+pub(crate) fn head_of(order: Order, body: &[u8], at: usize) -> Option<(Entry, usize)> {
+    let (flags, at) = element(order, body, at)?;
     let class = order.word(flags, 0)? & 0xff;
     let (class, numeric) = class_name(class);
     // An opaque object has its name where others have their dimensions.
     if class == "object" {
-        let (name, _) = element(order, head, at)?;
-        return Some(Entry { name: text(name), class, numeric, size: vec![], bytes });
+        let (name, at) = element(order, body, at)?;
+        let name = text(name);
+        return Some((Entry { name, class, numeric, size: vec![], bytes: 0..0, within: None }, at));
     }
-    let (dimensions, at) = element(order, head, at)?;
+    let (dimensions, at) = element(order, body, at)?;
     let size = (0..dimensions.len() / 4).filter_map(|k| order.word(dimensions, 4 * k));
     let size = size.map(|dimension| dimension as usize).collect();
-    let (name, _) = element(order, head, at)?;
-    Some(Entry { name: text(name), class, numeric, size, bytes })
+    let (name, at) = element(order, body, at)?;
+    Some((Entry { name: text(name), class, numeric, size, bytes: 0..0, within: None }, at))
 }
 
 /// The body of the element at `at`, and where the next one begins. A body of up to four bytes may
 /// stand inside the tag.
-fn element(order: Order, bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
+pub(crate) fn element(order: Order, bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
     let tag = order.word(bytes, at)?;
     if tag >> 16 != 0 {
         let size = (tag >> 16) as usize;
@@ -141,14 +166,19 @@ fn element(order: Order, bytes: &[u8], at: usize) -> Option<(&[u8], usize)> {
     Some((body, at + 8 + size.next_multiple_of(8)))
 }
 
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned()
+/// A name, up to the zeros that fill it up.
+pub(crate) fn text(bytes: &[u8]) -> String {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    String::from_utf8_lossy(&bytes[..end]).into_owned()
 }
+
+/// The class of structures, in words.
+pub(crate) const STRUCTURE: &str = "structure";
 
 fn class_name(class: u32) -> (&'static str, bool) {
     match class {
         1 => ("cell array", false),
-        2 => ("structure", false),
+        2 => (STRUCTURE, false),
         4 => ("text", false),
         5 => ("sparse matrix", false),
         6..=15 => ("numeric array", true),

@@ -1,11 +1,12 @@
-//! MATLAB v5 files: every numeric variable is a column.
+//! MATLAB v5 files: every numeric variable is a column, and every numeric field of a structure.
 
 use std::path::{Path, PathBuf};
 
 use matfile::{MatFile, NumericData};
 
 use crate::error::{DataError, Problem};
-use crate::mat_index::{self, Entry, HEADER};
+use crate::mat_fields;
+use crate::mat_index::{self, Entry, HEADER, Order};
 use crate::table::{Column, Table, nearest};
 
 /// An opened MATLAB file.
@@ -25,7 +26,14 @@ impl MatTable {
 
     /// A file with this one variable, which is all that the reader of arrays gets to see.
     fn alone(&self, entry: &Entry) -> Vec<u8> {
-        [&self.bytes[..HEADER], &self.bytes[entry.bytes.clone()]].concat()
+        let variable = match &entry.within {
+            None => self.bytes[entry.bytes.clone()].to_vec(),
+            Some(structure) => {
+                let field = structure[entry.bytes.clone()].to_vec();
+                mat_fields::named(Order::of(&self.bytes), field)
+            }
+        };
+        [&self.bytes[..HEADER], &variable].concat()
     }
 
     fn fail(&self, problem: Problem) -> DataError {
@@ -58,7 +66,17 @@ impl Table for MatTable {
     fn missing(&self, role: &str, column: Option<&str>) -> Problem {
         let dropped = self.entries.iter().find(|e| !e.numeric && Some(e.name.as_str()) == column);
         if let Some(entry) = dropped {
-            return Problem::NotNumeric { name: entry.name.clone(), class: entry.class };
+            let (name, class) = (entry.name.clone(), entry.class);
+            return Problem::NotNumeric { name, class, field: None };
+        }
+        // A structure whose fields are listed.
+        let inside = column.map(|column| format!("{column}."));
+        let field = inside.and_then(|inside| {
+            self.entries.iter().find(|e| e.numeric && e.name.starts_with(&inside))
+        });
+        if let (Some(name), Some(field)) = (column, field) {
+            let (name, field) = (name.to_owned(), Some(field.name.clone()));
+            return Problem::NotNumeric { name, class: mat_index::STRUCTURE, field };
         }
         let present = self.entries.iter().map(Entry::label).collect();
         let nearest = nearest(column.unwrap_or(role), &self.names());

@@ -65,7 +65,7 @@ pub const ALL: &[Facts] = &[
         rotary_header: "torque_Nm",
         linear: Dimension::Force,
         rotary: Dimension::Torque,
-        aliases: &["force", "f", "torque", "tau", "motor_force", "motor_torque"],
+        aliases: &["force", "f", "torque", "tau", "motor_force", "motor_torque", "effort"],
         rotary_aliases: &["torque", "tau", "motor_torque"],
     },
     Facts {

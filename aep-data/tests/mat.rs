@@ -48,9 +48,7 @@ fn a_single_time_is_the_sampling_interval() {
 #[test]
 fn missing_variables_list_those_present_with_class_and_size() {
     let text = error(&Mapping::default());
-    for part in
-        ["force", "u (40x1)", "x (1x40)", "log (structure)", "names (cell array)", "--force"]
-    {
+    for part in ["force", "u (40x1)", "x (1x40)", "log.b (1x3)", "names (cell array)", "--force"] {
         assert!(text.contains(part), "'{part}' is not in: {text}");
     }
 }
@@ -63,6 +61,51 @@ fn structures_and_matrices_are_named_and_a_sample_without_a_number_is_left_out()
     let mapping = mapping("t", "nan", "x");
     let loaded = read(&fixture("mixed.mat"), &mapping).unwrap();
     assert_eq!((loaded.left_out.missing, loaded.recording.len()), (1, 39));
+}
+
+#[test]
+fn fields_of_structures_are_variables_in_both_packings() {
+    let mapping = Mapping {
+        time: Source::column("out.time"),
+        force: Source::column("out.signals_0.values"),
+        position: Source { unit: Some("mm".to_owned()), ..Source::column("out.signals_1.values") },
+        ..Mapping::default()
+    };
+    for name in ["structures.mat", "structures_plain.mat"] {
+        let recording = load(&fixture(name), &mapping).unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(recording.len(), 40, "{name}");
+        assert_eq!(recording.require("force").unwrap()[3], 2.25);
+        assert!((recording.require("position").unwrap()[39] - 3.9e-3).abs() < 1e-15);
+        // Structures within structures, single precision.
+        let deep = Mapping { force: Source::column("out.info.motor.u_V"), ..mapping.clone() };
+        assert_eq!(load(&fixture(name), &deep).unwrap().require("force").unwrap()[5], 2.5);
+        let text = Mapping { force: Source::column("out.info.note"), ..mapping.clone() };
+        let error = load(&fixture(name), &text).unwrap_err().to_string();
+        assert!(error.contains("'out.info.note' is a text"), "{error}");
+        let whole = Mapping { force: Source::column("out.info"), ..mapping.clone() };
+        let error = load(&fixture(name), &whole).unwrap_err();
+        assert!(error.to_string().contains("'out.info' is a structure"), "{error}");
+        assert!(error.hint().unwrap_or_default().contains("out.info.motor.u_V"), "{error}");
+    }
+}
+
+#[test]
+fn one_structure_that_holds_all_needs_no_names() {
+    let loaded = read(&fixture("structure.mat"), &Mapping::default()).unwrap();
+    assert_eq!(loaded.recording.len(), 40);
+    assert_eq!(loaded.origins[1].column, "force_N");
+}
+
+#[test]
+fn damaged_structures_never_panic() {
+    let bytes = std::fs::read(fixture("structures_plain.mat")).unwrap();
+    for place in 128..bytes.len().min(1400) {
+        for value in [0, 1, 14, 0x7f, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[place] = value;
+            let _ = parse(Path::new("damaged.mat"), damaged, &mapping("out.time", "Ts", "Ts"));
+        }
+    }
 }
 
 #[test]

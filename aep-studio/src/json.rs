@@ -38,7 +38,7 @@ pub fn json(discovery: &Discovery) -> serde_json::Result<Value> {
 /// What the residual of a model says, with the names of its lines.
 ///
 /// # Errors
-/// As [`json`].
+/// As [`json()`].
 pub fn diagnosis(diagnosis: &Diagnosis) -> serde_json::Result<Value> {
     let mut json = serde_json::to_value(diagnosis)?;
     lines(&mut json, diagnosis);

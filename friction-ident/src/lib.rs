@@ -21,6 +21,7 @@ pub mod closed_loop;
 pub mod control;
 pub mod driven;
 pub mod effects;
+pub mod export;
 pub mod family;
 pub mod identify;
 pub mod known;

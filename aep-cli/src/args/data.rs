@@ -98,6 +98,9 @@ pub struct MappingArgs {
     /// Sampling interval in s, for files without a time
     #[arg(long, value_name = "S")]
     interval: Option<f64>,
+    /// Topic of an MCAP file, where several have joints
+    #[arg(long, value_name = "TOPIC")]
+    topic: Option<String>,
     /// How the force acts between samples: `zero-order` (a held command) or `sampled`
     #[arg(long, value_name = "HOLD", value_parser = parse_hold)]
     hold: Option<Hold>,
@@ -126,6 +129,7 @@ impl MappingArgs {
             regressors: self.regressor.iter().cloned().collect(),
             columns: read.cloned().collect(),
             interval_s: self.interval,
+            topic: self.topic.clone(),
             hold: self.hold,
         }
     }
@@ -149,6 +153,7 @@ impl MappingArgs {
             ("reference-unit", &self.reference_unit),
             ("temperature-unit", &self.temperature_unit),
             ("model-force-unit", &self.model_force_unit),
+            ("topic", &self.topic),
         ];
         let numbers = [
             ("force-gain", self.force_gain),

@@ -1,4 +1,7 @@
-//! `aep export`: a model as a compensator in C, or as JSON with its schema.
+//! `aep export`: a model as a compensator in C, for other simulators, or as JSON with its schema.
+
+mod fmu;
+mod simulators;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -15,7 +18,11 @@ use crate::failure::Failure;
 use crate::output::{self, written};
 use crate::steps;
 
-/// Export a model: its friction compensator as C, or the model as JSON with a schema
+/// Export a model: to a simulator (FMU, MJCF, URDF), its friction compensator as C, or as JSON with a schema
+///
+/// FMU: co-simulation after FMI 2.0, every effect simulated as here, with its C source and, where there is a C
+/// compiler, a binary for this machine. MJCF and URDF express less; what is left out is listed on the terminal and in the
+/// file.
 ///
 /// C: header, source, test vectors and a program that runs them. C99, no allocation, nothing but math.h;
 /// sampling time and stick limit are built in. The vectors are recorded from a simulated loop along
@@ -29,15 +36,21 @@ pub struct Args {
     /// What to write
     #[arg(long, value_enum)]
     to: Form,
-    /// Folder for the C files; file for the JSON, `-` for the terminal
+    /// Folder for the C files; file for everything else, `-` for the terminal (not the FMU)
     #[arg(value_name = "PATH", required_unless_present = "output")]
     path: Option<PathBuf>,
     /// The same as PATH
     #[arg(short, long, value_name = "PATH", conflicts_with = "path")]
     output: Option<PathBuf>,
-    /// Name of the C functions and files
-    #[arg(long, value_name = "NAME", default_value = "compensator")]
-    name: String,
+    /// Name of the C functions and files, of the FMU, of the joint [default: compensator, or the name of the file]
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// FMU: longest step of the integration, s (a parameter of it); MJCF: time step
+    #[arg(long, value_name = "S", default_value = "0.001")]
+    max_step: f64,
+    /// FMU: leave the binary for this machine out
+    #[arg(long)]
+    source_only: bool,
     #[command(flatten)]
     reference: ReferenceArgs,
     #[command(flatten)]
@@ -49,6 +62,12 @@ pub struct Args {
 enum Form {
     /// The compensator as C99
     C,
+    /// The model as a functional mock-up unit, FMI 2.0 for co-simulation
+    Fmu,
+    /// The model as a scene, which `MuJoCo` reads, as far as that can say it
+    Mjcf,
+    /// The model as a robot description, as far as that can say it
+    Urdf,
     /// The model as JSON that names its schema
     Json,
     /// The JSON schema of models
@@ -60,6 +79,8 @@ Examples:
   aep export --model model.json --to c drive
   cd drive && cc -std=c99 -ffp-contract=off compensator.c compensator_test.c -lm -o t && ./t compensator_vectors.csv
   aep export --model model.json --to c --sample-time 0.001 --name x_axis -o drive
+  aep export --model model.json --to fmu drive.fmu
+  aep export --model model.json --to mjcf drive.xml
   aep export --model model.json --to json -o exported.json
   aep export --to schema -o model.schema.json";
 
@@ -76,6 +97,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     };
     let files = match args.to {
         Form::C => c(args, path)?,
+        Form::Fmu => fmu::write(&plant(args)?, args, path)?,
+        Form::Mjcf => simulators::mjcf(&plant(args)?, args, path)?,
+        Form::Urdf => simulators::urdf(&plant(args)?, args, path)?,
         Form::Json => json(&model(args)?, path)?,
         Form::Schema => {
             output::save_json(path, &schema(&Library::builtin()))?;
@@ -85,15 +109,21 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if global.quiet || path.as_os_str() == "-" { Ok(()) } else { output::print(&files) }
 }
 
-fn model(args: &Args) -> Result<Model, Failure> {
+/// The model, whatever its forces are measured in.
+fn plant(args: &Args) -> Result<Model, Failure> {
     match &args.model {
-        Some(path) => {
-            let model = steps::read_plant(path)?;
-            steps::needs_force(&model, path)?;
-            Ok(model)
-        }
+        Some(path) => steps::read_plant(path),
         None => Ok(friction_ident::paper::table()?),
     }
+}
+
+/// The model, whose forces are forces.
+fn model(args: &Args) -> Result<Model, Failure> {
+    let model = plant(args)?;
+    if let Some(path) = &args.model {
+        steps::needs_force(&model, path)?;
+    }
+    Ok(model)
 }
 
 fn json(model: &Model, path: &Path) -> Result<String, Failure> {
@@ -113,7 +143,8 @@ fn c(args: &Args, folder: &Path) -> Result<String, Failure> {
     let reference = args.reference.build(model.axis(), settings.sample_time)?;
     let trial = control::run(&model, &reference, &servo, Some(&compensator))?;
     let samples = samples(&trial.run, &reference);
-    let files = to_c(&compensator, model.axis(), &args.name, &samples)?;
+    let name = args.name.as_deref().unwrap_or("compensator");
+    let files = to_c(&compensator, model.axis(), name, &samples)?;
     output::make_folder(folder)?;
     let mut said = String::new();
     for left in compensator.left_out() {

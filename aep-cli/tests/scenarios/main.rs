@@ -13,3 +13,4 @@ mod optimizers;
 mod own_model;
 mod plant;
 mod series;
+mod simulators;

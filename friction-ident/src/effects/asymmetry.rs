@@ -44,6 +44,7 @@ impl Effect for Asymmetry {
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw {
             smooth: "force += {dF_v} * fabs(v);",
+            damping: "damping += {dF_v} * (double)((v > 0.0) - (v < 0.0));",
             level: "level += {dF_C} * s;",
             ..CLaw::NONE
         })

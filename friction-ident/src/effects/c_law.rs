@@ -4,10 +4,13 @@
 /// to the bit where operations come in the order of the hooks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CLaw {
-    /// Statements that add to `force`, of `x` (position) and `v` (velocity).
+    /// Statements that add to `force`, of `x` (position) and `v` (velocity); what no compensator acts on also of `t`.
     pub smooth: &'static str,
+    /// Statements that add to `damping`, the slope of `force` against the velocity, of the same.
+    pub damping: &'static str,
     /// Statements that add to `level`, of `x`, `s` (direction), `w` (the velocity that the level
-    /// follows), `dwell` and `bond`.
+    /// follows), `dwell` and `bond`; what no compensator acts on also of `t`, `drive` (force of the
+    /// drive) and `a` (acceleration).
     pub level: &'static str,
     /// Expression of `w`: the share that is left of the static hump.
     pub hump: &'static str,
@@ -15,11 +18,17 @@ pub struct CLaw {
 
 impl CLaw {
     /// Nothing of its own: what it changes is computed elsewhere (a memory).
-    pub const NONE: Self = Self { smooth: "", level: "", hump: "" };
+    pub const NONE: Self = Self { smooth: "", damping: "", level: "", hump: "" };
 
     /// A force of position and velocity.
     pub const fn smooth(smooth: &'static str) -> Self {
         Self { smooth, ..Self::NONE }
+    }
+
+    /// The slope of its force against the velocity.
+    #[must_use]
+    pub const fn damped(self, damping: &'static str) -> Self {
+        Self { damping, ..self }
     }
 
     /// A level of friction.

@@ -1,6 +1,6 @@
 //! Drift: friction relaxes with time while the machine warms up.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 
 /// `(dF_C + dF_v |v|) exp(-t/tau) s`: what is there at the start beyond the final friction.
@@ -40,6 +40,15 @@ impl Effect for Drift {
 
     fn is_course_of_time(&self) -> bool {
         true
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw {
+            smooth: "force += {dF_v} * exp(-t / {tau}) * v;",
+            damping: "damping += {dF_v} * exp(-t / {tau});",
+            level: "level += {dF_C} * exp(-t / {tau});",
+            ..CLaw::NONE
+        })
     }
 
     fn not_compensated(&self) -> Option<&'static str> {

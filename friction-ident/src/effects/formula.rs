@@ -23,7 +23,7 @@ use super::{
     About, Effect, Extent, Motion, Parameter, ParameterRole, Parameters, Scale, Signal, Slot,
     Smooth, UnknownEffect,
 };
-use crate::axis::Quantity;
+use crate::axis::{Axis, Effort, Quantity};
 
 /// Why a text is no effect.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -225,7 +225,8 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
         return Err(wrong(what.into()));
     }
     let quantity = quantity(&p.unit).ok_or_else(|| {
-        wrong(format!("unknown unit '{}'; one of: {}", p.unit, UNITS.map(|(u, _)| u).join(", ")))
+        let known: Vec<&str> = units().into_iter().map(|(unit, _)| unit).collect();
+        wrong(format!("unknown unit '{}'; one of: {}", p.unit, known.join(", ")))
     })?;
     Ok(Parameter {
         name: keep(name),
@@ -244,28 +245,37 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
     })
 }
 
-const UNITS: [(&str, Quantity); 17] = [
-    ("1", Quantity::One),
-    ("N", Quantity::Force),
-    ("N m", Quantity::Force),
-    ("m", Quantity::Length),
-    ("rad", Quantity::Length),
-    ("m/s", Quantity::Velocity),
-    ("rad/s", Quantity::Velocity),
-    ("s", Quantity::Time),
-    ("Hz", Quantity::Frequency),
-    ("kg", Quantity::Mass),
-    ("kg m^2", Quantity::Mass),
-    ("N s/m", Quantity::Damping),
-    ("N m s/rad", Quantity::Damping),
-    ("N s^2/m^2", Quantity::Drag),
-    ("N/m", Quantity::Stiffness),
-    ("N m/rad", Quantity::Stiffness),
-    ("K", Quantity::Temperature),
+const QUANTITIES: [Quantity; 11] = [
+    Quantity::One,
+    Quantity::Force,
+    Quantity::Length,
+    Quantity::Velocity,
+    Quantity::Time,
+    Quantity::Frequency,
+    Quantity::Mass,
+    Quantity::Damping,
+    Quantity::Drag,
+    Quantity::Stiffness,
+    Quantity::Temperature,
 ];
 
+/// Every unit that a parameter may have: of either kind of axis, with a force, a voltage or a current for an effort.
+fn units() -> Vec<(&'static str, Quantity)> {
+    let mut units: Vec<(&str, Quantity)> = Vec::new();
+    for effort in [Effort::Si, Effort::Volt, Effort::Ampere] {
+        for quantity in QUANTITIES {
+            for unit in [Axis::Linear, Axis::Rotary].map(|axis| effort.unit(axis, quantity)) {
+                if units.iter().all(|(known, _)| *known != unit) {
+                    units.push((unit, quantity));
+                }
+            }
+        }
+    }
+    units
+}
+
 fn quantity(unit: &str) -> Option<Quantity> {
-    UNITS.iter().find(|(name, _)| *name == unit).map(|(_, quantity)| *quantity)
+    units().into_iter().find(|(name, _)| *name == unit).map(|(_, quantity)| quantity)
 }
 
 impl Formula {

@@ -1,6 +1,6 @@
 //! Friction that grows with the transmitted load: gears, nuts, preloaded bearings.
 
-use super::{About, Effect, Motion, Parameter, Parameters, Slot};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -78,6 +78,14 @@ impl Effect for LoadFriction {
 
     fn is_only_flexible(&self) -> bool {
         self.0 == Load::Both
+    }
+
+    fn c_law(&self) -> Option<CLaw> {
+        Some(CLaw::level(match self.0 {
+            Load::Drive => "level += {mu} * fabs(drive);",
+            Load::Inertia => "level += {c} * fabs(a);",
+            Load::Both => "level += {mu} * fabs(drive) + {c} * fabs(a);",
+        }))
     }
 
     fn not_compensated(&self) -> Option<&'static str> {

@@ -28,7 +28,7 @@ impl Effect for QuadraticDrag {
     }
 
     fn c_law(&self) -> Option<CLaw> {
-        Some(CLaw { smooth: "force += {c} * v * fabs(v);", ..CLaw::NONE })
+        Some(CLaw::smooth("force += {c} * v * fabs(v);").damped("damping += {c} * fabs(v);"))
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

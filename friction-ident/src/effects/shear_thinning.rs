@@ -34,7 +34,14 @@ impl Effect for ShearThinning {
     }
 
     fn c_law(&self) -> Option<CLaw> {
-        Some(CLaw { smooth: "force += {dF} * tanh(v / {v_n});", ..CLaw::NONE })
+        Some(CLaw {
+            smooth: "force += {dF} * tanh(v / {v_n});",
+            damping: "{
+    const double part = tanh(v / {v_n});
+    damping += {dF} * (1.0 - part * part) / {v_n};
+}",
+            ..CLaw::NONE
+        })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

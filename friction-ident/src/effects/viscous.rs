@@ -34,7 +34,7 @@ impl Effect for Viscous {
     }
 
     fn c_law(&self) -> Option<CLaw> {
-        Some(CLaw { smooth: "force += {F_v} * v;", ..CLaw::NONE })
+        Some(CLaw::smooth("force += {F_v} * v;").damped("damping += {F_v};"))
     }
 
     fn told_apart(&self) -> &'static [Apart] {

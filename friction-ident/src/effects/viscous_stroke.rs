@@ -49,6 +49,7 @@ impl Effect for ViscousStroke {
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw {
             smooth: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "force += sum * v;"),
+            damping: profile!("6", "{c_1}, {c_2}, {c_3}, {c_4}, {c_5}, {c_6}", "damping += sum;"),
             ..CLaw::NONE
         })
     }

@@ -109,9 +109,12 @@ mod tests {
             (coordinate("position", "m", false), bump),
             (coordinate("speed", "m/s", true), profile),
         ] {
-            let text = effect(&coordinate, &shape, "N").unwrap();
-            let read = formula::read(&text);
-            assert!(read.is_ok(), "{text}\n{:?}", read.err());
+            for unit in ["N", "N m", "V", "A"] {
+                let text = effect(&coordinate, &shape, unit).unwrap();
+                assert!(text.contains(&format!("{{ unit = \"{unit}\", low = -")), "{text}");
+                let read = formula::read(&text);
+                assert!(read.is_ok(), "{text}\n{:?}", read.err());
+            }
         }
         assert!(effect(&coordinate("acceleration", "m/s^2", false), &sine, "N").is_none());
     }

@@ -675,8 +675,8 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn generic_term(&self, coordinate: &Coordinate, shape: &Generic) -> Option<String> {
-        // Files of effects are in N or N m; what is fitted then has the unit of the effort.
-        generic::effect(coordinate, shape, self.axis.unit(crate::axis::Quantity::Force))
+        let unit = self.effort.unit(self.axis, crate::axis::Quantity::Force);
+        generic::effect(coordinate, shape, unit)
     }
 
     fn plots(&self, base: &Fitted, last: &Fitted) -> Vec<Plot> {

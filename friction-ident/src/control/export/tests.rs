@@ -3,49 +3,21 @@ use super::super::trial::{Servo, run, samples};
 use super::super::{Settings, paper as figures};
 use super::*;
 use crate::effects::{ALL, ParameterRole};
+use crate::export::testing::{Folder, compiler};
 use crate::model::Model;
 use crate::paper;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-
-/// A folder that is gone with the test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("aep-export-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-/// The C compiler, `CC` or `cc`; none where there is none.
-fn compiler() -> Option<String> {
-    let name = std::env::var("CC").unwrap_or_else(|_| "cc".into());
-    if Command::new(&name).arg("--version").output().is_ok_and(|out| out.status.success()) {
-        return Some(name);
-    }
-    eprintln!(
-        "SKIPPED: there is no C compiler '{name}', so that the exported C code was not compiled"
-    );
-    None
-}
 
 /// Compiles the files and runs the vectors; gives what the program says.
 fn built_and_run(compiler: &str, files: &[File], name: &str) -> String {
     let folder = Folder::new(name);
     for file in files {
-        std::fs::write(folder.0.join(&file.name), &file.text).unwrap();
+        std::fs::write(folder.path().join(&file.name), &file.text).unwrap();
     }
     let in_folder = |program: &Path| {
         let mut command = Command::new(program);
-        command.current_dir(&folder.0);
+        command.current_dir(folder.path());
         command
     };
     let built = in_folder(Path::new(compiler))
@@ -57,7 +29,7 @@ fn built_and_run(compiler: &str, files: &[File], name: &str) -> String {
     let source = || files.iter().find(|f| f.name == format!("{name}.c")).map(|f| f.text.clone());
     let errors = String::from_utf8_lossy(&built.stderr).into_owned();
     assert!(built.status.success(), "{errors}\n{}", source().unwrap_or_default());
-    let program = folder.0.join("run");
+    let program = folder.path().join("run");
     let ran = in_folder(&program).arg(format!("{name}_vectors.csv")).output().unwrap();
     let said = String::from_utf8_lossy(&ran.stdout).into_owned();
     assert!(ran.status.success(), "{name}: {said}\n{}", source().unwrap_or_default());

@@ -6,6 +6,7 @@ use super::super::compensator::Compensator;
 use super::{ExportError, Units};
 use crate::axis::Axis;
 use crate::effects::CLaw;
+use crate::export::constants::{constant, filled, number};
 use crate::model::Term;
 
 /// Contacts that are written in C, and whether they break at the level at rest.
@@ -427,24 +428,4 @@ impl<'a> Writer<'a> {
              return rows > 0 && worst <= 1e-12 ? 0 : 1;\n}}\n"
         )
     }
-}
-
-/// The constant of a parameter.
-fn constant(effect: &str, parameter: &str) -> String {
-    let name = format!("{effect}_{parameter}").to_uppercase();
-    // Symbols such as F_c and F_C differ in their case only where they belong to one effect.
-    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
-}
-
-/// A law with the constants of a term in place of its parameters.
-fn filled(term: &Term, law: &str) -> String {
-    let parameters = term.effect().about().parameters;
-    parameters.iter().fold(law.to_owned(), |law, parameter| {
-        law.replace(&format!("{{{}}}", parameter.name), &constant(term.name(), parameter.name))
-    })
-}
-
-/// A number that C reads back to the bit.
-fn number(value: f64) -> String {
-    if value < 0.0 { format!("({value:e})") } else { format!("{value:e}") }
 }

@@ -26,6 +26,10 @@ const COARSE: usize = 1500;
 /// What differs from cycle to cycle, as a share of the signal's own deviation.
 const COARSE_MATCH: f64 = 0.1;
 const MATCH: f64 = 0.02;
+/// Most pairs of samples that the search for the exact period looks at for a candidate: those of 270 000 samples.
+const MOST_PAIRS: usize = 100_000_000;
+/// How far from the best lag of a part that of the whole is looked for.
+const LAST_LAGS: usize = 3;
 
 impl Cycle {
     pub(super) fn of(recording: &Recording) -> Option<Self> {
@@ -81,9 +85,29 @@ fn period(values: &[f64]) -> Option<usize> {
     })
 }
 
+/// The best lag around `near`. Looked for on part of a very long recording, as the time grows with its square, and then
+/// once more on all of it next to what was found.
 fn refined(values: &[f64], near: usize, stride: usize) -> Option<usize> {
-    let lags = near.saturating_sub(stride)..=(near + stride).min(values.len() / 2);
-    lags.min_by(|&a, &b| difference(values, a).total_cmp(&difference(values, b)))
+    let longest = values.len() / 2;
+    let around = |near: usize, by: usize| near.saturating_sub(by)..=(near + by).min(longest);
+    let best = |lags: std::ops::RangeInclusive<usize>, skip: usize| {
+        let of = |lag: usize| every(values, lag, skip);
+        lags.min_by(|&a, &b| of(a).total_cmp(&of(b)))
+    };
+    let skip = (2 * stride).saturating_mul(values.len()).div_ceil(MOST_PAIRS);
+    let found = best(around(near, stride), skip)?;
+    if skip > 1 { best(around(found, LAST_LAGS), 1) } else { Some(found) }
+}
+
+/// [`difference`] from every `skip`-th sample.
+fn every(values: &[f64], lag: usize, skip: usize) -> f64 {
+    if skip == 1 {
+        return difference(values, lag);
+    }
+    let pairs = values.iter().zip(&values[lag..]).step_by(skip);
+    let (count, squares) =
+        pairs.fold((0u32, 0.0), |(count, sum), (a, b)| (count + 1, sum + (b - a).powi(2)));
+    (squares / f64::from(count.max(1))).sqrt()
 }
 
 /// Root mean square of `x(k + lag) - x(k)`.
@@ -97,4 +121,22 @@ fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
     (squares / values.len() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_period_of_a_recording_that_is_searched_in_part_is_exact() {
+        let cycle = 43_211;
+        let signal = |k: usize| {
+            let turn = std::f64::consts::TAU * (k % cycle) as f64 / cycle as f64;
+            turn.sin() + 0.3 * (3.0 * turn).cos()
+        };
+        let values: Vec<f64> = (0..600_000).map(signal).collect();
+        let stride = values.len().div_ceil(COARSE);
+        assert!(2 * stride * values.len() > MOST_PAIRS, "all of it is searched");
+        assert_eq!(period(&values), Some(cycle));
+    }
 }
