@@ -111,7 +111,7 @@ fn a_mat_file_without_the_variables_lists_those_it_has() {
     desk.write("run.mat", std::fs::read(fixture).unwrap());
     desk.aep("discover run.mat").refused(&[
         "error: no variable for the force; the file has: t (1x40), u (40x1), x (1x40)",
-        "log (structure)",
+        "log.a (1x1), log.b (1x3), names (cell array)",
         "hint: name it with --force NAME",
     ]);
     desk.write("no.mat", "time_s,force_N\n");

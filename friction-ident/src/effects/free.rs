@@ -169,10 +169,10 @@ impl Effect for FrictionStep {
         Some(&[40])
     }
 
-    /// From one trial to the middle between two, and halves of that: a fit feels where the step is no farther than it
-    /// rises.
-    fn leaps(&self) -> Option<(usize, &'static [f64])> {
-        Some((3, &[-0.012, -0.006, -0.003, 0.003, 0.006, 0.012]))
+    /// To the next trials and to the middle between two, and halves of that: a fit feels where the step is no farther than
+    /// it rises, and the first order errs where it is large.
+    fn leaps(&self) -> Option<(&'static str, &'static [f64])> {
+        Some(("u", &[-0.1, -0.05, -0.024, -0.012, -0.006, 0.006, 0.012, 0.024, 0.05, 0.1]))
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {

@@ -156,8 +156,8 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// The index of a parameter whose valley is narrow, and how far beside a fit other ones are looked for.
-    fn leaps(&self) -> Option<(usize, &'static [f64])> {
+    /// A parameter whose valley is narrow, and how far beside a fit others are looked for.
+    fn leaps(&self) -> Option<(&'static str, &'static [f64])> {
         None
     }
 

@@ -151,12 +151,14 @@ impl FrictionFamily {
 
     /// The model in other valleys of its last term, if those are narrow.
     pub(super) fn beside(&self, model: &Fitted) -> Vec<Fitted> {
-        let leaps = model.terms.last().and_then(|term| self.effect(*term)?.leaps());
-        let Some((parameter, distances)) = leaps else { return self.other_second_bodies(model) };
-        let k = model.range(self, model.terms.len() - 1).start + parameter;
+        let leaps = |term: usize| Some((&self.terms[term].name, self.effect(term)?.leaps()?));
+        let Some((name, (parameter, distances))) = model.terms.last().and_then(|t| leaps(*t))
+        else {
+            return self.other_second_bodies(model);
+        };
         let at = |distance: &f64| {
             let mut other = model.clone();
-            other.values[k] += distance;
+            self.change(&mut other, name, parameter, |value| value + distance);
             other
         };
         distances.iter().map(at).collect()
