@@ -250,7 +250,7 @@ def score(folder, aep, limit):
         place = truth.parent
         command = [aep, "discover", place / "train.csv", "--base", "coulomb,viscous", "--seed", "1", "--quiet"]
         command += ["--time-limit", str(limit), "--json", place / "found.json"]
-        subprocess.run(command, check=False, stdout=subprocess.DEVNULL)
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         kind, found = json.loads(truth.read_text())["hidden"], json.loads((place / "found.json").read_text())
         said = verdict(kind, found)
         counts[said] += 1

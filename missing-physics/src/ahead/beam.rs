@@ -252,7 +252,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// What makes two sets the same: the effects, whatever their form.
     fn key(&self, node: &Node) -> BTreeSet<usize> {
-        node.model.terms.iter().map(|term| self.main(*term)).collect()
+        self.mains(&node.model.terms)
+    }
+
+    /// The effects that terms are forms of.
+    fn mains(&self, terms: &[usize]) -> BTreeSet<usize> {
+        terms.iter().map(|term| self.main(*term)).collect()
     }
 
     /// Number of parameters of a set; a flexible form counts as the plain one that it stands for.
@@ -274,7 +279,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     fn names(&self, node: &Node) -> Vec<String> {
-        node.effects(self.family).iter().map(|t| self.family.terms()[*t].name.clone()).collect()
+        self.named(&node.effects(self.family))
+    }
+
+    fn named(&self, terms: &[usize]) -> Vec<String> {
+        terms.iter().map(|t| self.family.terms()[*t].name.clone()).collect()
     }
 
     fn note(

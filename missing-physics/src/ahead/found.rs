@@ -111,24 +111,25 @@ impl Found {
         self.rungs = self.rungs.par_iter().map(|rung| whole(&rung.model)).collect();
         while let Some(top) = self.rungs.last() {
             // All of the recording may take an effect to where it is none.
-            let refused = refused(family, ahead, &self.base, top);
             let place = |term: usize| self.added.iter().position(|t| main(*t) == main(term));
-            let refused = refused.and_then(|(term, refusal)| Some((place(term)?, refusal)));
-            let last = self.added.len() - 1;
-            let below = last.checked_sub(1).map_or(&self.base, |k| &self.rungs[k]);
-            let costs = self.added.par_iter().enumerate().map(|(k, term)| {
-                let without = if k == last { None } else { without(top, *term) };
-                comparison.compare(without.as_ref().unwrap_or(below), top)
-            });
-            self.costs = costs.collect();
-            self.p_values = self.costs.iter().map(|c| self.chance.p_value(c.nats)).collect();
-            let each = self.costs.iter().zip(&self.p_values).enumerate();
-            let idle = each
-                .filter(|(_, (cost, p))| cost.nats < thresholds.better || **p > thresholds.chance)
-                .min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
-            let goes = refused
-                .map(|(place, refusal)| (place, Some(refusal)))
-                .or_else(|| idle.map(|(place, _)| (place, None)));
+            let refused = refused(family, ahead, &self.base, top);
+            let mut goes = refused.and_then(|(term, refusal)| Some((place(term)?, Some(refusal))));
+            if goes.is_none() {
+                let last = self.added.len() - 1;
+                let below = last.checked_sub(1).map_or(&self.base, |k| &self.rungs[k]);
+                let costs = self.added.par_iter().enumerate().map(|(k, term)| {
+                    let without = if k == last { None } else { without(top, *term) };
+                    comparison.compare(without.as_ref().unwrap_or(below), top)
+                });
+                self.costs = costs.collect();
+                self.p_values = self.costs.iter().map(|c| self.chance.p_value(c.nats)).collect();
+                let each = self.costs.iter().zip(&self.p_values).enumerate();
+                let idle = each.filter(|(_, (cost, p))| {
+                    cost.nats < thresholds.better || **p > thresholds.chance
+                });
+                let least = idle.min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
+                goes = least.map(|(place, _)| (place, None));
+            }
             let Some((idle, refusal)) = goes else { break };
             let term = self.added.remove(idle);
             let effect = family.terms()[term].name.clone();

@@ -32,13 +32,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let (kept, gone): (Vec<usize>, Vec<usize>) =
             added.iter().partition(|term| others.contains(&self.main(**term)));
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
-        let named = |terms: &[usize]| {
-            terms.iter().map(|t| self.family.terms()[*t].name.clone()).collect::<Vec<String>>()
-        };
         let found = Remains::Outdone {
-            by: named(&Self::added(base, refused)),
+            by: self.named(&Self::added(base, refused)),
             refusal: refusal.clone(),
-            instead_of: named(&gone),
+            instead_of: self.named(&gone),
             nats: self.in_full(by.nats),
         };
         Some((result, found))
@@ -47,10 +44,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// Whether a refused model is another way to write one: it has the same effects, or would have in the form that it
     /// is related to (a contact that gives more than its gap is wide is a spring).
     fn stands_for(&self, refused: &Node, node: &Node) -> bool {
-        let has = |terms: &[usize]| {
-            let mains: Vec<usize> = terms.iter().map(|term| self.main(*term)).collect();
-            node.model.terms.iter().all(|term| mains.contains(&self.main(*term)))
-        };
+        let effects = self.key(node);
+        let has = |terms: &[usize]| self.mains(terms).is_superset(&effects);
         let related = self.ahead.relatives(&refused.model);
         has(&refused.model.terms) || related.iter().any(|model| has(&model.terms))
     }

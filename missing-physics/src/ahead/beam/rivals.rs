@@ -58,12 +58,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             return None;
         }
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
-        let gone = added.iter().filter(|t| !kept.contains(t));
-        let gone: Vec<String> = gone.map(|t| self.family.terms()[*t].name.clone()).collect();
+        let gone: Vec<usize> = added.iter().copied().filter(|t| !kept.contains(t)).collect();
         let nats = self.in_full(self.comparison.compare(last, &beside).nats);
         let course = self.family.course(rival.term, &self.values(&beside, rival));
-        let found =
-            Remains::Rival { rival: rival.title.to_owned(), instead_of: gone, nats, course };
+        let found = Remains::Rival {
+            rival: rival.title.to_owned(),
+            instead_of: self.named(&gone),
+            nats,
+            course,
+        };
         Some((result, found))
     }
 
