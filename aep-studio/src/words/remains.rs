@@ -79,6 +79,11 @@ fn course(course: &Course) -> String {
         Course::Step { change, at, unit, along_unit } => {
             format!("it changes by {} at {}", quantity(*change, unit), quantity(*at, along_unit))
         }
+        Course::Wave { amplitude, period, unit, along_unit } => format!(
+            "it swings by {} to either side every {}",
+            quantity(*amplitude, unit),
+            quantity(*period, along_unit)
+        ),
         Course::Varies { range, from, to, unit, along_unit } => format!(
             "it varies over a range of {}, most of all between {} and {}",
             quantity(*range, unit),
@@ -126,6 +131,9 @@ mod tests {
             "A friction level that varies freely with time does what drift + stribeck would do (+120 nats): it changes by \
              -1.70 N at 11.5 s. Why, this recording does not show."
         );
+        let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
+        let wave = Course::Wave { amplitude: 10.25, period: 0.4348, unit, along_unit };
+        assert!(rival(&[], wave).contains("it swings by 10.3 N to either side every 435 ms."));
         let (unit, along_unit) = ("N".to_owned(), "m".to_owned());
         let varies = Course::Varies { range: 1.7, from: 0.1, to: 0.11, unit, along_unit };
         assert!(rival(&[], varies).contains(

@@ -1,11 +1,15 @@
-//! What varies freely, with time or along the stroke: no effect, but what an effect must be told from.
+//! What varies freely, with time or along the stroke, or swings by itself: no effect, but what an effect must be told from.
 //!
 //! A friction level or a force that may be anything at every moment or place explains nothing. Where it predicts as
 //! well as effects do that were found, the recording does not show those effects: see [`missing_physics::family::Rival`].
 
+mod wave;
+
 use super::{About, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use missing_physics::report::Course;
+
+pub use wave::ForceWave;
 
 /// Knots over the recording or the stroke; straight between them, 0 at the first one, so that nothing competes with
 /// `coulomb` or `offset`.
@@ -39,7 +43,7 @@ pub struct Free {
 }
 
 /// All of them, in the order in which they are asked.
-pub static RIVALS: [Free; 4] = [
+pub static RIVALS: [Free; 5] = [
     Free {
         effect: &FrictionOverTime,
         title: "a friction level that varies freely with time",
@@ -60,6 +64,7 @@ pub static RIVALS: [Free; 4] = [
         title: "a force that varies freely along the stroke",
         is_kin: |effect| effect.is_of_place(),
     },
+    Free { effect: &ForceWave, title: "a force that repeats itself over time", is_kin: |_| false },
 ];
 
 /// Share of the recording over which a step rises: a fit has to feel where it is.
@@ -255,6 +260,9 @@ pub fn course(
         ("friction-step", [change, share]) => {
             Some(Course::Step { change: *change, at: moment(*share), unit, along_unit })
         }
+        ("force-wave", [sine, cosine, period]) => {
+            Some(Course::Wave { amplitude: sine.hypot(*cosine), period: *period, unit, along_unit })
+        }
         ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
             let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
             let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
@@ -318,6 +326,9 @@ mod tests {
         let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
         let step = Course::Step { change: -1.7, at: 11.5, unit, along_unit };
         assert_eq!(told("friction-step", &[-1.7, 0.5]).unwrap(), step);
+        let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
+        let wave = Course::Wave { amplitude: 5.0, period: 0.4, unit, along_unit };
+        assert_eq!(told("force-wave", &[3.0, -4.0, 0.4]).unwrap(), wave);
         assert_eq!(told("stribeck", &[1.0]), None);
     }
 

@@ -6,8 +6,8 @@ use crate::axis::Quantity;
 /// Force per unit of each amplitude of a law, from the sine and the cosine of `2 pi x/period` at each position.
 pub type OfWave = fn(&[(f64, f64)]) -> Vec<Vec<f64>>;
 
-/// A law that repeats itself along the stroke: its period is looked for among hundreds, as every line of a spectrum is
-/// narrow.
+/// A law that repeats itself along the stroke or over time: its period is looked for among hundreds, as every line of a
+/// spectrum is narrow.
 #[derive(Clone, Copy, Debug)]
 pub struct Periodic {
     /// The parameter that is the period; the only shape of the law.
@@ -20,17 +20,19 @@ pub struct Periodic {
     /// Force per unit of each amplitude, from the sine and the cosine of `2 pi x/period` at each position; nothing where
     /// it does not follow from these.
     pub columns: Option<OfWave>,
-    /// Shortest period that is looked for, m or rad; nothing where only the recording limits it.
+    /// Shortest period that is looked for, m, rad or s; nothing where only the recording limits it.
     pub shortest: Option<f64>,
 }
 
-/// What of an effect repeats along the stroke.
+/// What of an effect repeats, and along what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Repeats {
-    /// A force on the moving mass.
+    /// A force on the moving mass, along the stroke.
     Force,
-    /// An error of what the sensor shows.
+    /// An error of what the sensor shows, along the stroke.
     Sensor,
+    /// A force on the moving mass, over time.
+    ForceOverTime,
 }
 
 /// What a shape is tried at in a screening.

@@ -21,7 +21,7 @@ const RANKED_ON: usize = 3_000;
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
 const KEPT: usize = 4;
-/// Fewest periods in a stroke: fewer are no ripple but a profile.
+/// Fewest periods in a stroke or a recording: fewer are no wave but a profile.
 const LEAST_PERIODS: f64 = 3.0;
 
 /// The predictor of a recording with the instants that it counts.
@@ -113,9 +113,9 @@ impl FrictionFamily {
         if about.parameters.iter().all(|p| p.role == Role::Amplitude) {
             return vec![Vec::new()];
         }
-        if self.periodic(term).is_some_and(|law| law.ranked) {
+        if let Some(law) = self.periodic(term).filter(|law| law.ranked) {
             // A fit moves a period by more than the half of a line that lies between two of these.
-            let longest = (self.stroke.1 - self.stroke.0) / LEAST_PERIODS;
+            let longest = self.extent_of(law) / LEAST_PERIODS;
             let short = |shape: &Vec<f64>| shape[0] <= longest;
             return self.shapes(term).into_iter().step_by(2).filter(short).collect();
         }
@@ -205,6 +205,7 @@ impl Ahead for View<'_> {
         let wave = match law.of {
             Repeats::Force => Wave::Force,
             Repeats::Sensor => Wave::Sensor,
+            Repeats::ForceOverTime => Wave::ForceOverTime,
         };
         let parameters = &self.family.terms[term].parameters;
         let from_end = parameters.iter().rev().position(|p| p.name == law.period)? + 1;

@@ -5,12 +5,12 @@ use missing_physics::{Role, Term, TermParameter};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Effort, Quantity};
-use crate::effects::{self, About, Effect, Periodic, Trials};
+use crate::effects::{self, About, Effect, Periodic, Repeats, Trials};
 use crate::signal::quantile;
 
-/// Most trial periods of a ripple: down to 1/280 of the stroke. Finer ones are not looked for.
+/// Most trial periods of a wave: down to 1/280 of the stroke or the recording. Finer ones are not looked for.
 const MOST_PERIODS: usize = 700;
-/// Spacing of trial periods in spatial frequency times stroke. A line is 1
+/// Spacing of trial periods in frequency times stroke or recording. A line is 1
 /// wide, one of the second harmonic half as much.
 const LINE_WIDTH: f64 = 0.4;
 
@@ -219,19 +219,20 @@ fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
         || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
 }
 
-/// Trial periods along the stroke within the limits of `term`, the shortest first: evenly in spatial
+/// Trial periods along the stroke, or the recording, of `length` within the limits of `term`, the shortest first: evenly in
 /// frequency, a little less than a line width apart, up to the frequency that passes the comparison's
-/// bandwidth in slow motion.
-pub fn periods(
-    prepared: &Prepared,
-    stroke: (f64, f64),
-    (term, law): (&Term, Periodic),
-) -> Vec<Vec<f64>> {
-    let length = stroke.1 - stroke.0;
-    let slow = quantile(&prepared.sample(&prepared.velocity), 0.1);
+/// bandwidth, in slow motion.
+pub fn periods(prepared: &Prepared, length: f64, (term, law): (&Term, Periodic)) -> Vec<Vec<f64>> {
+    let slow = match law.of {
+        Repeats::Force | Repeats::Sensor => {
+            quantile(&prepared.sample(&prepared.velocity), 0.1).max(prepared.rest_speed)
+        }
+        // As time runs.
+        Repeats::ForceOverTime => 1.0,
+    };
     let longest = term.parameters.iter().find(|parameter| parameter.name == law.period);
     let lowest = (1.5 / length).max(longest.map_or(0.0, |period| 1.0 / period.upper));
-    let passing = prepared.bandwidth / slow.max(prepared.rest_speed);
+    let passing = prepared.bandwidth / slow;
     let finest = law.shortest.map_or(f64::INFINITY, |shortest| 1.0 / shortest);
     let highest = passing.min(lowest + LINE_WIDTH * MOST_PERIODS as f64 / length).min(finest);
     let count = ((highest - lowest) * length / LINE_WIDTH).ceil().max(1.0) as usize;

@@ -471,6 +471,17 @@ impl FrictionFamily {
         term.checked_sub(1).and_then(|index| self.periodic[index])
     }
 
+    /// Length of what a law repeats itself along, m, rad or s.
+    fn extent_of(&self, law: Periodic) -> f64 {
+        match law.of {
+            Repeats::Force | Repeats::Sensor => self.stroke.1 - self.stroke.0,
+            Repeats::ForceOverTime => {
+                let moment = |extent| self.extent(extent).unwrap_or_default();
+                moment(Extent::RecordingEnd) - moment(Extent::RecordingBegin)
+            }
+        }
+    }
+
     fn is_simple(&self, term: usize) -> bool {
         term > 0 && {
             let about = self.effects[term - 1].about();
@@ -522,7 +533,7 @@ impl ModelFamily for FrictionFamily {
             return vec![Vec::new()];
         }
         if let Some(law) = self.periodic(term) {
-            return limits::periods(&self.prepared, self.stroke, (about, law));
+            return limits::periods(&self.prepared, self.extent_of(law), (about, law));
         }
         let trials = self.effect(term).and_then(|effect| limits::trials(effect, about));
         trials.unwrap_or_else(|| missing_physics::family::shapes::grid(about))

@@ -24,11 +24,13 @@ pub enum Wave {
     Force,
     /// An error of what the sensor shows.
     Sensor,
+    /// A force on the mass that repeats over time, not along the stroke.
+    ForceOverTime,
 }
 
 impl Predictor {
-    /// Changes of the prediction errors by `sin(2 pi x/period)` and `cos(2 pi x/period)`, of 1 N (N m) against the
-    /// motion or of 1 m (rad), for each period.
+    /// Changes of the prediction errors by `sin(2 pi x/period)` and `cos(2 pi x/period)`, or of time in the place of
+    /// `x`, of 1 N (N m) against the motion or of 1 m (rad), for each period.
     pub fn responses(&self, setting: usize, wave: Wave, periods: &[f64]) -> Vec<[Vec<f32>; 2]> {
         let moving = self.moving();
         let motion: Vec<Motion> = (0..self.time.len())
@@ -53,13 +55,14 @@ impl Predictor {
             let (mut x, mut v) = ([0.0; 2], [0.0; 2]);
             for k in segment.start + 1..segment.end {
                 let counts = counted.next_if_eq(&k).is_some();
-                let (before, now) = (self.position[k - 1], self.position[k]);
+                let along = if wave == Wave::ForceOverTime { &self.time } else { &self.position };
+                let (before, now) = (along[k - 1], along[k]);
                 let (force, shown) = match wave {
-                    Wave::Force if moving[k] => {
+                    Wave::Force | Wave::ForceOverTime if moving[k] => {
                         let (sin, cos) = (wavenumber * 0.5 * (before + now)).sin_cos();
                         ([-sin, -cos], [0.0; 2])
                     }
-                    Wave::Force => ([0.0; 2], [0.0; 2]),
+                    Wave::Force | Wave::ForceOverTime => ([0.0; 2], [0.0; 2]),
                     Wave::Sensor => {
                         let (sin, cos) = (wavenumber * now).sin_cos();
                         ([0.0; 2], [sin, cos])

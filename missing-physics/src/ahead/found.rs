@@ -169,9 +169,9 @@ impl Found {
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
-    /// Takes all names back where they are not the cause: what is left is in a few wild samples, samples are known to be
-    /// faulty, the greater part of the force that the base model lacks is still lacking beyond doubt, or what is no effect
-    /// does more.
+    /// Takes all names back where they are not the cause: the error does not fall with them, what is left is in a few wild
+    /// samples, samples are known to be faulty, the greater part of the force that the base model lacks is still lacking
+    /// beyond doubt, or what is no effect does more.
     pub fn judge<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
@@ -180,7 +180,9 @@ impl Found {
     ) {
         let Some(top) = self.rungs.last() else { return };
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
-        if self.complete && no_cause.is_none() {
+        // A likelihood gains by another share of noise, too: what a model explains it foretells.
+        let falls = top.scale < self.base.scale;
+        if self.complete && falls && no_cause.is_none() {
             return;
         }
         let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
@@ -188,7 +190,7 @@ impl Found {
             rms > thresholds.local * band && rms * rms > MOST * before * before
         });
         let faulty = local::faults(&top.errors).is_some() || ahead.faults().is_some();
-        if !still && !faulty && no_cause.is_none() {
+        if falls && !still && !faulty && no_cause.is_none() {
             return;
         }
         let lacking = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
@@ -281,6 +283,18 @@ mod tests {
             assert!(found.complete, "{:?}", found.places);
             assert_eq!((found.added.as_slice(), found.remarks.len()), (&[WAVE][..], 0));
         }
+    }
+
+    #[test]
+    fn names_go_where_the_error_does_not_fall_with_them() {
+        let (plant, mut found) = found(None);
+        let smaller = found.rungs[0].errors.iter().map(|e| 0.99 * e).collect();
+        let model = found.base.model.clone();
+        found.base = Node::new(&plant, model, found.base.setting, smaller);
+        assert!(found.complete);
+        found.judge(&plant, &plant, &Thresholds::default());
+        assert!(found.added.is_empty() && !found.complete);
+        assert!(matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]));
     }
 
     #[test]

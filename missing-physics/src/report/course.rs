@@ -19,6 +19,17 @@ pub enum Course {
         /// SI unit of time or place.
         along_unit: String,
     },
+    /// It swings.
+    Wave {
+        /// By so much to either side, in `unit`.
+        amplitude: f64,
+        /// Once in this time or way, in `along_unit`.
+        period: f64,
+        /// SI unit of the amplitude.
+        unit: String,
+        /// SI unit of time or place.
+        along_unit: String,
+    },
     /// It may change anywhere.
     Varies {
         /// Largest less smallest value, in `unit`.

@@ -14,35 +14,66 @@ use crate::report::{Outcome, Reason, Remains};
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
 const PROMISED: f64 = 0.5;
 
+/// What a rival does.
+struct Does {
+    /// The model without the effects that it makes up for.
+    without: Node,
+    /// The number of these.
+    instead_of: usize,
+    /// What it gains over the model with all of them, nats.
+    nats: f64,
+    found: Remains,
+}
+
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The model without effects that a rival makes up for, and what it was found to be; nothing where all of them
-    /// stand.
+    /// The model without effects that a rival makes up for, and what it was found to be; with all of them where it does
+    /// something beside them. Nothing where no rival does.
     pub(super) fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
         let rivals = self.ahead.rivals();
-        rivals.iter().find_map(|rival| self.without_rivalled(climb, last, rival))
+        let each = rivals.iter().filter_map(|rival| self.rival(climb, last, rival));
+        // Nothing is worse than a name that is not there.
+        let order = |does: &Does| (does.instead_of > 0, does.nats);
+        let most = each.max_by(|a, b| {
+            let ((a, more), (b, nats)) = (order(a), order(b));
+            a.cmp(&b).then(more.total_cmp(&nats))
+        });
+        most.map(|does| (does.without, does.found))
     }
 
-    fn without_rivalled(
-        &mut self,
-        climb: &Climb,
-        last: &Node,
-        rival: &Rival,
-    ) -> Option<(Node, Remains)> {
+    fn rival(&mut self, climb: &Climb, last: &Node, rival: &Rival) -> Option<Does> {
         let base = &climb.base;
         let added = Self::added(base, last);
-        let promised = screen(self.family, self.ahead, base, &[rival.term], false);
-        let start = promised.promises.into_iter().next()?;
-        if (self.stop)() || start.gain < PROMISED * self.thresholds.better {
+        let least = PROMISED * self.thresholds.better;
+        let promised = |node: &Node| -> Option<Fitted> {
+            let promised = screen(self.family, self.ahead, node, &[rival.term], false);
+            let first =
+                promised.promises.into_iter().next().filter(|promise| promise.gain >= least);
+            first?.starts.into_iter().next()
+        };
+        // What was found may hide it.
+        let beside = || {
+            let without = |model: Fitted, term: &usize| model.without(self.family, *term);
+            let found = Some(last).filter(|_| !added.is_empty())?;
+            Some(added.iter().fold(promised(found)?, without))
+        };
+        let start = promised(base).or_else(beside)?;
+        if (self.stop)() {
             return None;
         }
-        let free = self.leapt(self.refit(start.starts.first()?, base.setting, STEPS.2));
-        // Of more effects some may be needed beside it.
-        if added.len() <= 2 && !self.does_as_much(last, &free, added.len(), rival) {
+        let free = self.leapt(self.refit(&start, base.setting, STEPS.2));
+        // Of more effects, and beside some that leave something, some may be needed beside it.
+        let all = added.is_empty() || (added.len() <= 2 && self.is_complete(last));
+        if all && !self.does_as_much(last, &free, added.len(), rival) {
             return None;
         }
-        let (mut kept, beside) = self.needed_beside(&added, last, &free, rival);
+        // Beside what leaves nothing nothing is needed.
+        let (mut kept, beside) = if self.is_complete(&free) {
+            (Vec::new(), free)
+        } else {
+            self.needed_beside(base, last, &free, rival)
+        };
         let gone = added.len() - kept.len();
-        if !added.is_empty() && (gone == 0 || !self.does_as_much(last, &beside, gone, rival)) {
+        if !added.is_empty() && !self.does_as_much(last, &beside, gone, rival) {
             return None;
         }
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
@@ -54,24 +85,26 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 kept = shapes;
             }
         }
-        if !added.is_empty() && kept.len() == added.len() {
+        let gone: Vec<usize> = added.iter().copied().filter(|t| !kept.contains(t)).collect();
+        // What leaves nothing lacks nothing, and a shape of the rival that does as much stands for it.
+        if gone.is_empty() && !added.is_empty() && (!kin.is_empty() || self.is_complete(last)) {
             return None;
         }
-        let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
-        let gone: Vec<usize> = added.iter().copied().filter(|t| !kept.contains(t)).collect();
+        let without = match (kept.is_empty(), gone.is_empty()) {
+            (true, _) => base.clone(),
+            (false, true) => last.clone(),
+            (false, false) => self.only(base, last, &kept),
+        };
         let nats = self.in_full(self.comparison.compare(last, &beside).nats);
         let course = self.family.course(rival.term, &self.values(&beside, rival));
-        let found = Remains::Rival {
-            rival: rival.title.to_owned(),
-            instead_of: self.named(&gone),
-            nats,
-            course,
-        };
-        Some((result, found))
+        let instead_of = self.named(&gone);
+        let rival = rival.title.to_owned();
+        let found = Remains::Rival { rival, instead_of, nats, course };
+        Some(Does { without, instead_of: gone.len(), nats, found })
     }
 
-    /// Whether a model with the rival predicts as well as the last one, or better where it makes up for no more than one
-    /// effect.
+    /// Whether a model with the rival predicts as well as the last one, or better where it makes up for one effect or
+    /// none.
     fn does_as_much(&mut self, last: &Node, with: &Node, instead_of: usize, rival: &Rival) -> bool {
         let by = self.comparison.compare(last, with);
         let better = self.thresholds.better;
@@ -81,19 +114,21 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         outcome == Outcome::Rival
     }
 
-    /// The effects that are needed beside a rival, and the model with them and with it.
+    /// The effects that are needed beside a rival, as much as any that is added, and the model with them and with it.
     fn needed_beside(
         &mut self,
-        added: &[usize],
+        base: &Node,
         last: &Node,
         free: &Node,
         rival: &Rival,
     ) -> (Vec<usize>, Node) {
+        let added = Self::added(base, last);
+        let needed = self.thresholds.clear(self.comparison.compare(base, free).nats);
         let mut kept: Vec<usize> =
             added.iter().copied().filter(|t| !self.is_kin(*t, rival)).collect();
         let values = self.values(free, rival);
         let with = |search: &Self, kept: &[usize]| {
-            let model = search.keeping(last, added, kept).with(rival.term, &values);
+            let model = search.keeping(last, &added, kept).with(rival.term, &values);
             search.refit(&model, last.setting, STEPS.1)
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
@@ -104,7 +139,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 (*term, self.comparison.compare(&without, &beside), without)
             });
             let least = each.min_by(|a, b| a.1.nats.total_cmp(&b.1.nats));
-            let idle = |least: &(usize, Difference, Node)| least.1.nats < self.thresholds.better;
+            let idle = |least: &(usize, Difference, Node)| least.1.nats < needed;
             let Some((term, cost, without)) = least.filter(idle) else { return (kept, beside) };
             let from = beside.clone();
             self.note(

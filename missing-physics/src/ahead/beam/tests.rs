@@ -95,8 +95,8 @@ fn an_effect_that_later_ones_make_idle_is_dropped() {
     let mut added = found.added.clone();
     added.sort_unstable();
     assert_eq!(added, [WAVE, BEAT], "{:#?}", found.decisions);
-    let dropped: Vec<&Decision> =
-        found.decisions.iter().filter(|d| d.outcome == Outcome::Dropped).collect();
+    let idle = |d: &&Decision| d.because == Some(Reason::AsGoodWithout);
+    let dropped: Vec<&Decision> = found.decisions.iter().filter(idle).collect();
     assert_eq!(dropped.len(), 1);
     assert_eq!(dropped[0].compared_with.len(), 3);
     assert!(!dropped[0].candidate.contains(&"both".to_owned()), "{dropped:?}");
@@ -184,6 +184,19 @@ fn a_rival_is_told_where_nothing_else_is_found() {
     assert!(instead_of.is_empty() && *nats > 100.0, "{nats}");
     let Course::Values { values } = course else { panic!("{course:?}") };
     assert!((values[0].value - 0.05).abs() < 0.005, "{values:?}");
+}
+
+#[test]
+fn a_rival_is_told_beside_an_effect_that_stands() {
+    let plant = Plant::new(14, &[(TONE, &[0.2, 5.0]), (RIVAL, &[0.04])]);
+    let exclude = ["wave", "beat", "both", "push", "twin"].map(str::to_owned).to_vec();
+    let found = discover(&plant, &Settings { exclude, ..Settings::default() }, &mut ()).unwrap();
+    assert_eq!(found.added, ["tone"], "{:?}", found.remains);
+    let Some(Remains::Rival { instead_of, nats, .. }) = found.remains.first() else {
+        panic!("{:?}", found.remains);
+    };
+    assert!(instead_of.is_empty() && *nats > 100.0, "{nats}");
+    assert!(!found.budget.unwrap().complete);
 }
 
 #[test]
