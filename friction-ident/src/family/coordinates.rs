@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
+use missing_physics::measurement::period::period;
 use missing_physics::{Coordinate, Recording};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Effort, Quantity};
 
-/// Two stretches of motion repeat each other where they differ by less than this share of the
-/// motion's standard deviation.
-const REPEATS: f64 = 0.02;
+/// Fewest blocks that cycles are made into, and most: shorter ones are too much alike their neighbours.
+const BLOCKS: (usize, usize) = (3, 40);
 
 /// The coordinates of the comparison grid.
 pub fn coordinates(
@@ -108,57 +108,49 @@ fn slope(values: &[f64], interval: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The cycles of a motion that repeats itself at least three times, as ranges of the grid; empty
-/// for any other.
+/// The cycles of a motion that repeats itself at least three times, as ranges of the grid, several in one where there
+/// are more than 40; empty for any other.
 pub fn cycles(p: &Prepared) -> Vec<Range<usize>> {
     let [range] = p.segments.as_slice() else { return Vec::new() };
-    let x = &p.position[range.clone()];
-    let Some(period) = period(x) else { return Vec::new() };
-    // The last cycle may be cut short; less than half of one belongs to its predecessor.
-    let count = (x.len() + period / 2) / period;
     let at = |sample: usize| p.grid.partition_point(|&k| k < range.start + sample);
-    (0..count)
-        .map(|c| at(c * period)..if c + 1 == count { p.grid.len() } else { at((c + 1) * period) })
-        .collect()
+    let mut starts = starts(&p.position[range.clone()]);
+    starts.push(range.len());
+    starts.windows(2).map(|block| at(block[0])..at(block[1])).collect()
 }
 
-/// The period of a motion that repeats itself at least three times, in samples.
-fn period(x: &[f64]) -> Option<usize> {
-    let n = x.len();
-    let mean = x.iter().sum::<f64>() / n as f64;
-    let deviation = (x.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n as f64).sqrt();
-    let difference = |lag: usize, step: usize| {
-        let pairs = (0..n - lag).step_by(step);
-        let count = pairs.len() as f64;
-        (pairs.map(|k| (x[k + lag] - x[k]).powi(2)).sum::<f64>() / count).sqrt() / deviation
-    };
-    let (coarse, step) = ((n / 2000).max(1), (n / 1000).max(1));
-    let candidates: Vec<usize> = (n / 40..n / 3).step_by(coarse).collect();
-    // A lag near a period, then the best lag around it.
-    let near = candidates.into_iter().find(|&lag| difference(lag, step) < 2.0 * REPEATS)?;
-    let around = near..(near + 20 * coarse).min(n / 2);
-    let best = around.min_by(|&a, &b| difference(a, step).total_cmp(&difference(b, step)))?;
-    (difference(best, 1) < REPEATS).then_some(best)
+/// The samples at which the blocks of a motion begin.
+fn starts(x: &[f64]) -> Vec<usize> {
+    let Some(period) = period(x) else { return Vec::new() };
+    let cycles = x.len() as f64 / period;
+    let block = period * (cycles / BLOCKS.1 as f64).ceil();
+    if (BLOCKS.0 as f64) * block > x.len() as f64 {
+        return Vec::new();
+    }
+    // The last one may be cut short; less than half of one belongs to its predecessor.
+    let count = (x.len() as f64 / block).round() as usize;
+    (0..count).map(|k| (k as f64 * block).round() as usize).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_motion_of_four_cycles_has_their_period() {
-        let x: Vec<f64> = (0..24_841)
-            .map(|k| {
-                let phase = std::f64::consts::TAU * f64::from(k) / 6240.0;
-                phase.sin() + 0.3 * (3.0 * phase + 1.0).cos()
-            })
-            .collect();
-        assert!(period(&x).unwrap().abs_diff(6240) < 3);
+    fn sines(samples: u32, period: f64) -> Vec<f64> {
+        let phase = |k: u32| std::f64::consts::TAU * f64::from(k) / period;
+        (0..samples).map(|k| phase(k).sin() + 0.3 * (3.0 * phase(k) + 1.0).cos()).collect()
     }
 
     #[test]
-    fn a_motion_without_repeats_has_no_period() {
-        let x: Vec<f64> = (0..9000).map(|k| (1e-6 * f64::from(k) * f64::from(k)).sin()).collect();
-        assert_eq!(period(&x), None);
+    fn blocks_are_cycles_and_where_there_are_many_several_of_them() {
+        assert_eq!(starts(&sines(24_841, 6240.0)), [0, 6240, 12_480, 18_720]);
+        let of_many = starts(&sines(20_000, 200.0));
+        assert_eq!((of_many.len(), of_many[1]), (33, 600));
+    }
+
+    #[test]
+    fn two_cycles_and_no_cycle_make_no_blocks() {
+        assert_eq!(starts(&sines(500, 200.0)), [0; 0]);
+        let rising: Vec<f64> = (0..9000).map(|k| (1e-6 * f64::from(k * k)).sin()).collect();
+        assert_eq!(starts(&rising), [0; 0]);
     }
 }

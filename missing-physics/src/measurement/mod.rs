@@ -2,6 +2,7 @@
 //! need no more than this room; it imports nothing of the engine.
 
 pub mod check;
+pub mod period;
 pub mod quantity;
 mod recording;
 

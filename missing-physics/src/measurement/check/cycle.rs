@@ -3,12 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Recording;
+use crate::measurement::period::{difference, period};
 use crate::measurement::quantity::quantity;
 
 /// Motion that repeats.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Length of a cycle in samples.
+    /// Length of a cycle in samples, rounded.
     pub samples: usize,
     /// Length of a cycle, s.
     pub period_s: f64,
@@ -21,15 +22,8 @@ pub struct Cycle {
     pub force_unit: String,
 }
 
-/// The scan for the period looks at about this many samples.
-const COARSE: usize = 1500;
-/// What differs from cycle to cycle, as a share of the signal's own deviation.
-const COARSE_MATCH: f64 = 0.1;
-const MATCH: f64 = 0.02;
-/// Most pairs of samples that the search for the exact period looks at for a candidate: those of 270 000 samples.
-const MOST_PAIRS: usize = 100_000_000;
-/// How far from the best lag of a part that of the whole is looked for.
-const LAST_LAGS: usize = 3;
+/// Most cycles over which the force is compared, where one is not whole samples long.
+const APART: usize = 10;
 
 impl Cycle {
     pub(super) fn of(recording: &Recording) -> Option<Self> {
@@ -38,14 +32,15 @@ impl Cycle {
             return None;
         };
         let motion = recording.channel("reference").or_else(|| recording.channel("position"))?;
-        let samples = period(&motion.values)?;
+        let period = period(&motion.values)?;
         let force = recording.channel("force");
+        let apart = whole(period, motion.values.len());
         Some(Self {
-            samples,
-            period_s: samples as f64 * recording.interval(),
-            cycles: motion.values.len() / samples,
+            samples: period.round() as usize,
+            period_s: period * recording.interval(),
+            cycles: (motion.values.len() as f64 / period) as usize,
             force_repeatability: force
-                .map(|force| difference(&force.values, samples) / std::f64::consts::SQRT_2),
+                .map(|force| difference(&force.values, apart) / std::f64::consts::SQRT_2),
             force_unit: force.map(|force| force.unit.clone()).unwrap_or_default(),
         })
     }
@@ -64,79 +59,32 @@ impl Cycle {
     }
 }
 
-/// The shortest lag after which the signal repeats, at least twice.
-fn period(values: &[f64]) -> Option<usize> {
-    let stride = values.len().div_ceil(COARSE).max(1);
-    let coarse: Vec<f64> = values.iter().copied().step_by(stride).collect();
-    let spread = deviation(&coarse);
-    if spread == 0.0 {
-        return None;
-    }
-    // A smooth signal is like itself after a few samples: first it must become unlike.
-    let lags = 1..=coarse.len() / 2;
-    let unlike = lags.clone().find(|&lag| difference(&coarse, lag) > spread)?;
-    let candidates = (unlike..*lags.end()).filter(|&lag| {
-        let here = difference(&coarse, lag);
-        here < COARSE_MATCH * spread && here <= difference(&coarse, lag + 1)
-    });
-    candidates.take(20).find_map(|lag| {
-        let best = refined(values, lag * stride, stride)?;
-        (difference(values, best) < MATCH * spread).then_some(best)
-    })
-}
-
-/// The best lag around `near`. Looked for on part of a very long recording, as the time grows with its square, and then
-/// once more on all of it next to what was found.
-fn refined(values: &[f64], near: usize, stride: usize) -> Option<usize> {
-    let longest = values.len() / 2;
-    let around = |near: usize, by: usize| near.saturating_sub(by)..=(near + by).min(longest);
-    let best = |lags: std::ops::RangeInclusive<usize>, skip: usize| {
-        let of = |lag: usize| every(values, lag, skip);
-        lags.min_by(|&a, &b| of(a).total_cmp(&of(b)))
-    };
-    let skip = (2 * stride).saturating_mul(values.len()).div_ceil(MOST_PAIRS);
-    let found = best(around(near, stride), skip)?;
-    if skip > 1 { best(around(found, LAST_LAGS), 1) } else { Some(found) }
-}
-
-/// [`difference`] from every `skip`-th sample.
-fn every(values: &[f64], lag: usize, skip: usize) -> f64 {
-    if skip == 1 {
-        return difference(values, lag);
-    }
-    let pairs = values.iter().zip(&values[lag..]).step_by(skip);
-    let (count, squares) =
-        pairs.fold((0u32, 0.0), |(count, sum), (a, b)| (count + 1, sum + (b - a).powi(2)));
-    (squares / f64::from(count.max(1))).sqrt()
-}
-
-/// Root mean square of `x(k + lag) - x(k)`.
-fn difference(values: &[f64], lag: usize) -> f64 {
-    let pairs = values.iter().zip(&values[lag..]);
-    let squares: f64 = pairs.map(|(a, b)| (b - a).powi(2)).sum();
-    (squares / (values.len() - lag).max(1) as f64).sqrt()
-}
-
-fn deviation(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (squares / values.len() as f64).sqrt()
+/// The lag of one cycle or a few that is nearest to whole samples: beside a jump of the force a part of a sample is a
+/// difference that the drive does not make.
+fn whole(period: f64, samples: usize) -> usize {
+    let off = |lag: f64| (lag - lag.round()).abs();
+    let lags = (1..=APART).map(|cycles| cycles as f64 * period);
+    let lags = lags.filter(|lag| 2.0 * lag <= samples as f64);
+    lags.min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(period).round() as usize
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measurement::Channel;
 
     #[test]
-    fn the_period_of_a_recording_that_is_searched_in_part_is_exact() {
-        let cycle = 43_211;
-        let signal = |k: usize| {
-            let turn = std::f64::consts::TAU * (k % cycle) as f64 / cycle as f64;
-            turn.sin() + 0.3 * (3.0 * turn).cos()
-        };
-        let values: Vec<f64> = (0..600_000).map(signal).collect();
-        let stride = values.len().div_ceil(COARSE);
-        assert!(2 * stride * values.len() > MOST_PAIRS, "all of it is searched");
-        assert_eq!(period(&values), Some(cycle));
+    fn a_force_that_repeats_exactly_does_so_where_a_cycle_ends_between_samples() {
+        let turn = |k: u32| std::f64::consts::TAU * f64::from(k) / 80.4;
+        let of = |f: fn(f64) -> f64| (0..8040).map(|k| f(turn(k))).collect();
+        let channels = vec![
+            Channel::new("position", "m", of(f64::sin)),
+            Channel::new("force", "N", of(|turn| (turn + 0.1).cos().signum())),
+        ];
+        let time = (0..8040).map(|k| f64::from(k) * 1e-3).collect();
+        let cycle = Cycle::of(&Recording::new("sine", time, channels).unwrap()).unwrap();
+        assert_eq!((cycle.samples, cycle.cycles), (80, 100));
+        assert!((cycle.period_s - 0.0804).abs() < 1e-5, "{}", cycle.period_s);
+        assert!(cycle.force_repeatability.unwrap() < 1e-9, "{:?}", cycle.force_repeatability);
     }
 }
