@@ -138,4 +138,17 @@ mod tests {
         let found = &law.of.with_before(1).coefficients;
         assert!(found[0].abs() < 0.02, "{found:?}");
     }
+
+    #[test]
+    fn errors_that_are_mostly_none_keep_the_colour_of_the_others() {
+        // The axis rests three quarters of the time: the median error is none.
+        let ringing = ringing(&noise(8_000, 5));
+        let moves = |k: usize| k % 400 < 100;
+        let error = |(k, e): (usize, &f64)| if moves(k) { *e } else { 0.0 };
+        let errors: Vec<f64> = ringing.iter().enumerate().map(error).collect();
+        let instants = one_piece(errors.len());
+        let left = Law::of(&errors, &instants).left(&errors, &instants);
+        let rms = |values: &[f64]| statistics::rms(values, f64::INFINITY);
+        assert!(rms(&left) < 0.5 * rms(&errors), "{} {}", rms(&left), rms(&errors));
+    }
 }

@@ -87,6 +87,12 @@ pub struct Plant {
     regimes: Vec<Regime>,
     /// A term that is no effect in its plain form.
     pub none: Option<usize>,
+    /// The effects that are shapes of the rival.
+    pub kin: Vec<usize>,
+    /// A term that may be another one as well.
+    pub related: Option<(usize, usize)>,
+    /// Frequencies beside that of a tone, rad/s.
+    pub leaps: Vec<f64>,
     /// The force that every model lacks.
     pub lacks: Option<Series>,
 }
@@ -168,6 +174,9 @@ impl Plant {
             regimes: vec![Regime { name: "all".into(), member: vec![true; SAMPLES] }],
             time,
             none: None,
+            kin: vec![PUSH],
+            related: None,
+            leaps: Vec::new(),
             lacks: None,
         }
     }
@@ -247,7 +256,23 @@ impl Ahead for Plant {
         Some(model.without(self, WAVE).with(BENT, &[size, 0.0]))
     }
     fn rivals(&self) -> Vec<Rival> {
-        vec![Rival { term: RIVAL, title: "a wave less a beat", kin: vec![PUSH] }]
+        vec![Rival { term: RIVAL, title: "a wave less a beat", kin: self.kin.clone() }]
+    }
+    fn relatives(&self, model: &Fitted) -> Vec<Fitted> {
+        let related = self.related.filter(|(term, _)| model.terms.last() == Some(term));
+        let swapped = |(term, other)| {
+            let size = model.values.last().copied().unwrap_or_default();
+            model.without(self, term).with(other, &[size])
+        };
+        related.map(swapped).into_iter().collect()
+    }
+    fn variations(&self, model: &Fitted) -> Vec<Fitted> {
+        let Some(place) = model.terms.iter().position(|term| *term == TONE) else {
+            return Vec::new();
+        };
+        let size = model.values[model.range(self, place).start];
+        let leap = |omega: &f64| model.without(self, TONE).with(TONE, &[size, *omega]);
+        self.leaps.iter().map(leap).collect()
     }
     fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
         let refusal = Refusal::AtLimit { parameter: "it is none".into() };

@@ -105,7 +105,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// Whether a model with the rival predicts as well as the last one, or better where it makes up for one effect or
     /// none.
-    fn does_as_much(&mut self, last: &Node, with: &Node, instead_of: usize, rival: &Rival) -> bool {
+    pub(super) fn does_as_much(
+        &mut self,
+        last: &Node,
+        with: &Node,
+        instead_of: usize,
+        rival: &Rival,
+    ) -> bool {
         let by = self.comparison.compare(last, with);
         let better = self.thresholds.better;
         let needed = if instead_of > 1 { -better } else { better };

@@ -1,3 +1,8 @@
+mod conclude;
+mod grow;
+mod rivals;
+mod shape;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
@@ -14,6 +19,29 @@ fn never() -> bool {
 
 fn found(plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
     among(&ALL, plant, thresholds, most)
+}
+
+/// A search that begins with nothing compared.
+fn search(plant: &Plant, thresholds: Thresholds) -> Search<'_, Plant> {
+    Search::new(plant, plant, thresholds, ALL.to_vec(), &never, &|_| ())
+}
+
+/// A model as it is.
+fn node(plant: &Plant, terms: &[(usize, &[f64])]) -> Node {
+    fit::evaluated(plant, Plant::model(terms), 0)
+}
+
+/// The base model, and sets of one effect, of two and so on.
+fn climb(plant: &Plant, sizes: Vec<Vec<Node>>) -> Climb {
+    let base = node(plant, &[]);
+    Climb {
+        nodes: std::iter::once(vec![base.clone()]).chain(sizes).collect(),
+        ranking: Vec::new(),
+        refused: Vec::new(),
+        beam: Vec::new(),
+        base,
+        ended: true,
+    }
 }
 
 fn among(candidates: &[usize], plant: &Plant, thresholds: Thresholds, most: usize) -> Found {

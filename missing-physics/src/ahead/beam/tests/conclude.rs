@@ -1,0 +1,73 @@
+//! The size of the set, and what goes at the end.
+
+use super::*;
+
+const BOTH_HIDDEN: [(usize, &[f64]); 2] = [(WAVE, &[0.2]), (BEAT, &[0.005])];
+
+#[test]
+fn of_sets_that_predict_alike_the_one_with_fewer_parameters_stands() {
+    let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+    let wave: (usize, &[f64]) = (WAVE, &[0.05]);
+    let (more, fewer) =
+        (node(&plant, &[wave, (TONE, &[1e-6, 5.0])]), node(&plant, &[wave, (PUSH, &[1e-6])]));
+    for sets in [vec![more.clone(), fewer.clone()], vec![fewer, more]] {
+        let best = search(&plant, narrow()).size(&climb(&plant, vec![sets]));
+        assert_eq!(best.model.terms, [0, WAVE, PUSH]);
+    }
+}
+
+#[test]
+fn a_set_with_fewer_parameters_does_not_stand_where_it_predicts_worse() {
+    let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+    let sets = vec![node(&plant, &[(WAVE, &[0.05])]), node(&plant, &[])];
+    let best = search(&plant, narrow()).size(&climb(&plant, vec![sets]));
+    assert_eq!(best.model.terms, [0, WAVE]);
+}
+
+#[test]
+fn a_further_effect_must_gain_a_share_of_what_all_of_them_do() {
+    let plant = Plant::new(2, &BOTH_HIDDEN);
+    let sizes = || vec![vec![node(&plant, &BOTH_HIDDEN[..1])], vec![node(&plant, &BOTH_HIDDEN)]];
+    for (share, effects) in [(0.0, 2), (0.2, 1)] {
+        let mut search = search(&plant, Thresholds { share, ..narrow() });
+        let best = search.size(&climb(&plant, sizes()));
+        assert_eq!(best.effects(&plant).len(), effects, "{:?}", search.decisions);
+        let last = search.decisions.last().unwrap();
+        let outcome = if effects == 2 { Outcome::Added } else { Outcome::TooLittle };
+        assert_eq!((last.rung, last.outcome), (2, outcome));
+    }
+}
+
+#[test]
+fn an_effect_that_the_others_do_without_goes_and_one_that_they_need_stays() {
+    let plant = Plant::new(3, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
+    let all = [(WAVE, &[0.05][..]), (BEAT, &[0.05]), (PUSH, &[1e-4])];
+    let mut search = search(&plant, narrow());
+    let (kept, costs) = search.prune(&climb(&plant, Vec::new()), node(&plant, &all));
+    assert_eq!(kept.effects(&plant), [WAVE, BEAT]);
+    assert!(costs.len() == 2 && costs.iter().all(|(_, cost, _)| cost.nats > 20.0), "{costs:?}");
+    let [dropped] = &search.decisions[..] else { panic!("{:?}", search.decisions) };
+    assert_eq!(dropped.outcome, Outcome::Dropped);
+    assert_eq!(dropped.because, Some(Reason::AsGoodWithout));
+}
+
+#[test]
+fn a_single_effect_is_not_dropped_for_what_it_gains() {
+    // Whether it is enough was asked where its size was.
+    let plant = Plant::new(3, &[]);
+    let mut search = search(&plant, narrow());
+    let (kept, costs) = search.prune(&climb(&plant, Vec::new()), node(&plant, &[(PUSH, &[1e-4])]));
+    assert_eq!((kept.effects(&plant), costs.len()), (vec![PUSH], 1));
+}
+
+#[test]
+fn what_chance_gains_as_often_as_it_is_allowed_to_is_not_named() {
+    let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+    assert_eq!(among(&[WAVE], &plant, narrow(), 1).added, [WAVE]);
+    // No shift gains as much, which is one in all of them and not none.
+    let found = among(&[WAVE], &plant, Thresholds { chance: 0.0, ..narrow() }, 1);
+    assert_eq!(found.added, [0; 0]);
+    let dropped = |d: &&Decision| d.outcome == Outcome::Dropped;
+    let dropped = found.decisions.iter().find(dropped).unwrap();
+    assert_eq!(dropped.because, Some(Reason::Chance));
+}

@@ -1,0 +1,87 @@
+//! What takes names back: what stands for no effect, and what was refused.
+
+use super::*;
+use crate::family::Rival;
+
+const HIDDEN: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[-0.02])];
+
+#[test]
+fn effects_that_are_shapes_of_a_rival_stand_where_they_predict_as_well() {
+    let mut plant = Plant::new(11, &HIDDEN);
+    for (kin, stand) in [(vec![], false), (vec![WAVE, BEAT], true)] {
+        plant.kin = kin;
+        let last = node(&plant, &HIDDEN);
+        let without = search(&plant, narrow()).rivalled(&climb(&plant, Vec::new()), &last);
+        assert_eq!(without.is_none(), stand);
+    }
+}
+
+#[test]
+fn a_shape_of_a_rival_that_predicts_worse_goes_with_the_others() {
+    let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.1]), (BEAT, &[-0.04])];
+    let mut plant = Plant::new(11, &hidden);
+    plant.kin = vec![WAVE];
+    let thresholds = Thresholds { share: 0.0, ..narrow() };
+    let last = node(&plant, &hidden);
+    let (without, remains) =
+        search(&plant, thresholds).rivalled(&climb(&plant, Vec::new()), &last).unwrap();
+    assert!(without.effects(&plant).is_empty());
+    let Remains::Rival { instead_of, .. } = remains else { panic!("{remains:?}") };
+    assert_eq!(instead_of.len(), 2);
+}
+
+#[test]
+fn a_rival_must_predict_better_than_one_effect_and_as_well_as_several() {
+    // As well, to a few nats.
+    let one = Plant::new(12, &[(WAVE, &[0.05])]);
+    let rival = Rival { term: RIVAL, title: "a wave less a beat", kin: Vec::new() };
+    let (last, with) = (node(&one, &[(WAVE, &[0.05])]), node(&one, &[(TWIN, &[0.05])]));
+    let mut search = search(&one, Thresholds { better: 1e4, ..narrow() });
+    assert!(!search.does_as_much(&last, &with, 1, &rival));
+    assert!(search.does_as_much(&last, &with, 2, &rival));
+}
+
+/// What a refused set does to the last model.
+fn outdone(
+    plant: &Plant,
+    last: &[(usize, &[f64])],
+    refused: &[(usize, &[f64])],
+) -> Option<(Node, Remains)> {
+    let mut climb = climb(plant, Vec::new());
+    let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
+    climb.refused.push((node(plant, refused), refusal));
+    search(plant, Thresholds { share: 0.0, ..narrow() }).outdone(&climb, &node(plant, last))
+}
+
+#[test]
+fn a_refused_set_takes_back_the_effects_that_it_does_without() {
+    let plant = Plant::new(13, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
+    let last: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (PUSH, &[0.01])];
+    let refused: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
+    let (without, remains) = outdone(&plant, &last, &refused).unwrap();
+    assert_eq!(without.effects(&plant), [WAVE]);
+    let Remains::Outdone { by, instead_of, .. } = remains else { panic!("{remains:?}") };
+    assert_eq!((by, instead_of), (vec!["wave".into(), "beat".into()], vec!["push".to_owned()]));
+}
+
+#[test]
+fn a_refused_set_takes_nothing_back_with_more_effects_or_where_it_predicts_no_better() {
+    let plant = Plant::new(13, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
+    let (push, wave, both) = ((PUSH, &[0.01][..]), (WAVE, &[0.05][..]), (BOTH, &[1e-4][..]));
+    assert!(outdone(&plant, &[push], &[wave]).is_some());
+    assert!(outdone(&plant, &[push], &[wave, (BEAT, &[0.05])]).is_none());
+    assert!(outdone(&plant, &[wave], &[both]).is_none());
+}
+
+#[test]
+fn a_refused_set_takes_nothing_back_that_it_is_another_way_to_write() {
+    let bent: (usize, &[f64]) = (BENT, &[0.05, 0.05]);
+    let plant = Plant::new(14, &[bent]);
+    assert!(outdone(&plant, &[(PUSH, &[0.01])], &[bent]).is_some());
+    assert!(outdone(&plant, &[(WAVE, &[0.05])], &[bent]).is_none(), "another form");
+    let mut plant = Plant::new(14, &[(WAVE, &[0.05])]);
+    let (push, wave) = ((PUSH, &[0.01][..]), (WAVE, &[0.05][..]));
+    assert!(outdone(&plant, &[push], &[wave]).is_some());
+    plant.related = Some((WAVE, PUSH));
+    assert!(outdone(&plant, &[push], &[wave]).is_none(), "related");
+}
