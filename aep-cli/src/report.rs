@@ -88,7 +88,7 @@ impl Report<'_> {
             json["friction"] = serde_json::to_value(&self.together).map_err(broken)?;
         }
         json["recording"] = json!(self.loaded.recording.name());
-        json["data"] = serde_json::to_value(self.check).map_err(broken)?;
+        json["data"] = aep_studio::json::data(self.check).map_err(broken)?;
         let left_out = &self.loaded.left_out;
         json["data"]["rows_left_out"] =
             json!({ "without_number": left_out.missing, "time_repeated": left_out.repeated });

@@ -1,6 +1,7 @@
 //! A discovery as JSON: its numbers, and beside them the sentences that people read.
 
 use missing_physics::Discovery;
+use missing_physics::measurement::check::DataCheck;
 use missing_physics::report::Diagnosis;
 use serde_json::{Value, json};
 
@@ -35,6 +36,19 @@ pub fn json(discovery: &Discovery) -> serde_json::Result<Value> {
     Ok(json)
 }
 
+/// What is to be known of the data, with severity and sentence (`text`) beside each finding.
+///
+/// # Errors
+/// As [`json()`].
+pub fn data(check: &DataCheck) -> serde_json::Result<Value> {
+    let mut json = serde_json::to_value(check)?;
+    for (k, finding) in check.findings.iter().enumerate() {
+        json["findings"][k]["severity"] = json!(finding.severity());
+        json["findings"][k]["text"] = json!(words::finding(finding));
+    }
+    Ok(json)
+}
+
 /// What the residual of a model says, with the names of its lines.
 ///
 /// # Errors
@@ -49,5 +63,25 @@ fn lines(json: &mut Value, diagnosis: &Diagnosis) {
     for (k, line) in diagnosis.lines.iter().enumerate() {
         json["lines"][k]["name"] = json!(words::line(line));
         json["lines"][k]["note"] = json!(words::relation(line));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use missing_physics::measurement::check::check;
+    use missing_physics::{Channel, Recording};
+
+    use super::*;
+
+    #[test]
+    fn a_finding_has_numbers_and_the_sentence_that_people_read() {
+        let time = (0..100).map(f64::from).collect();
+        let rest = Channel::new("position", "m", vec![0.0; 100]);
+        let json = data(&check(&Recording::new("rest", time, vec![rest]).unwrap())).unwrap();
+        let constant =
+            json["findings"].as_array().unwrap().iter().find(|f| f["kind"] == "constant");
+        let constant = constant.unwrap();
+        assert_eq!((&constant["severity"], &constant["value"]), (&json!("serious"), &json!(0.0)));
+        assert_eq!(constant["text"], "the position is 0 m in every sample");
     }
 }

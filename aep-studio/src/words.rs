@@ -9,6 +9,7 @@ use missing_physics::report::{
 mod axes;
 mod combinations;
 mod compared;
+mod findings;
 mod lines;
 mod places;
 mod refusals;
@@ -22,6 +23,7 @@ pub use compared::{
     COMPARED, COMPARED_HEADINGS, Compared, compared, comparisons, effects_of, needed, outcome,
     why_nothing,
 };
+pub use findings::finding;
 pub use lines::{line, relation};
 pub use places::{largest, pattern};
 pub use refusals::{reason, refusal};

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use aep_data::{LeftOut, Loaded};
+use aep_studio::words;
 use anstyle::AnsiColor;
 use missing_physics::Hold;
 use missing_physics::measurement::check::{DataCheck, Severity};
@@ -26,12 +27,12 @@ pub fn data_check(loaded: &Loaded, check: &DataCheck) -> String {
         let _ = writeln!(text, " {} {said}", dim("·"));
     }
     for finding in &check.findings {
-        let mark = match finding.severity {
+        let mark = match finding.severity() {
             Severity::Info => dim("·"),
             Severity::Warning => paint(AnsiColor::Yellow, "!"),
             Severity::Serious => paint(AnsiColor::Red, "!!"),
         };
-        let _ = writeln!(text, " {mark} {}", finding.text);
+        let _ = writeln!(text, " {mark} {}", words::finding(finding));
     }
     text
 }

@@ -5,6 +5,7 @@ use missing_physics::measurement::quantity::{percent, quantity};
 
 use crate::html::{self, concat, escape, table};
 use crate::report::Source;
+use crate::words;
 
 /// The section of the data.
 pub(super) fn section(check: &DataCheck, source: &Source) -> String {
@@ -30,12 +31,12 @@ pub(super) fn section(check: &DataCheck, source: &Source) -> String {
 
 fn findings(check: &DataCheck) -> String {
     let items = concat(check.findings.iter().map(|finding| {
-        let class = match finding.severity {
+        let class = match finding.severity() {
             Severity::Info => "info",
             Severity::Warning => "warning",
             Severity::Serious => "serious",
         };
-        format!("<li class={class}>{}</li>", escape(&finding.text))
+        format!("<li class={class}>{}</li>", escape(&words::finding(finding)))
     }));
     if items.is_empty() { items } else { format!("<ul class=findings>{items}</ul>") }
 }

@@ -1,15 +1,15 @@
 //! What is to be known of a recording before any model: sampling, gaps, resolution, clipping, speeds,
-//! repeated motion. Everything is estimated from the samples alone; the findings say in words what
-//! limits the analysis.
+//! repeated motion. Everything is estimated from the samples alone; the findings say what limits the
+//! analysis.
 
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::measurement::quantity::{percent, quantity};
 use crate::measurement::{Channel, Recording};
 
 mod cycle;
+mod finding;
 mod gaps;
 mod quantum;
 mod sampling;
@@ -17,31 +17,11 @@ mod saturation;
 mod speed;
 
 pub use cycle::Cycle;
+pub use finding::{Finding, Severity};
 pub use gaps::cut_at_gaps;
 pub use sampling::{Gap, Sampling};
 pub use saturation::Saturation;
 pub use speed::Speed;
-
-/// How much a finding matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Severity {
-    /// Good to know.
-    Info,
-    /// Limits what can be found.
-    Warning,
-    /// Nothing trustworthy can be found like this.
-    Serious,
-}
-
-/// One sentence about the data.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Finding {
-    /// How much it matters.
-    pub severity: Severity,
-    /// In words.
-    pub text: String,
-}
 
 /// What one channel looks like.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -144,40 +124,30 @@ impl DataCheck {
             speed.findings(position, self.sampling.interval_s, &mut findings);
         }
         if let Some(cycle) = &self.cycle {
-            findings.push(Finding::info(cycle.in_words()));
+            findings.push(cycle.finding());
         }
-        findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+        findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity()));
         findings
-    }
-}
-
-impl Finding {
-    fn info(text: String) -> Self {
-        Self { severity: Severity::Info, text }
-    }
-
-    fn warning(text: String) -> Self {
-        Self { severity: Severity::Warning, text }
     }
 }
 
 impl ChannelCheck {
     fn findings(&self, findings: &mut Vec<Finding>) {
-        let Self { name, unit, .. } = self;
+        let (channel, unit) = (&self.name, &self.unit);
         if self.is_constant() {
-            let value = quantity(self.max, unit);
-            let needed = matches!(name.as_str(), "force" | "position");
-            let text = format!("the {name} is {value} in every sample");
-            let severity = if needed { Severity::Serious } else { Severity::Info };
-            return findings.push(Finding { severity, text });
+            return findings.push(Finding::Constant {
+                channel: channel.clone(),
+                value: self.max,
+                unit: unit.clone(),
+                needed: matches!(channel.as_str(), "force" | "position"),
+            });
         }
-        for limit in &self.saturation {
-            let value = quantity(limit.level, unit);
-            let share = percent(limit.share);
-            findings.push(Finding::warning(format!(
-                "the {name} is held at {value} in {share} of the samples: it is clipped there"
-            )));
-        }
+        findings.extend(self.saturation.iter().map(|limit| Finding::Clipped {
+            channel: channel.clone(),
+            level: limit.level,
+            unit: unit.clone(),
+            share: limit.share,
+        }));
     }
 }
 

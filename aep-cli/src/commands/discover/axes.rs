@@ -6,8 +6,8 @@ use std::sync::{Mutex, PoisonError};
 
 use aep_data::{Axes, Loaded, PLACE};
 use aep_studio::report::AxisPage;
-use aep_studio::words::{AXES_HEADINGS, AxisResult, axis_row};
-use missing_physics::measurement::check::{DataCheck, check};
+use aep_studio::words::{self, AXES_HEADINGS, AxisResult, axis_row};
+use missing_physics::measurement::check::{DataCheck, Severity, check};
 use missing_physics::report::{Combinations, Samples};
 use missing_physics::{Discovery, discover};
 use serde_json::{Value, json};
@@ -232,10 +232,9 @@ fn read_from(axes: &[Axis], without_force: &[String]) -> String {
             let origin = axis.loaded.origins.iter().find(|origin| origin.channel == channel);
             origin.map_or_else(String::new, |o| format!("{} ({})", o.column, o.unit))
         };
-        let doubts = axis.check.findings.iter().filter(|finding| {
-            finding.severity != missing_physics::measurement::check::Severity::Info
-        });
-        let doubts: Vec<&str> = doubts.map(|finding| finding.text.as_str()).collect();
+        let doubts = axis.check.findings.iter();
+        let doubts = doubts.filter(|finding| finding.severity() != Severity::Info);
+        let doubts: Vec<String> = doubts.map(words::finding).collect();
         table.row([
             axis.name.clone(),
             column("force"),

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Finding;
 use crate::measurement::Recording;
 use crate::measurement::period::{difference, period};
-use crate::measurement::quantity::quantity;
 
 /// Motion that repeats.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -45,17 +45,13 @@ impl Cycle {
         })
     }
 
-    pub(super) fn in_words(&self) -> String {
-        let motion = format!(
-            "the motion repeats every {}, {} times",
-            quantity(self.period_s, "s"),
-            self.cycles
-        );
-        let Some(force) = self.force_repeatability else {
-            return motion;
-        };
-        let force = quantity(force, &self.force_unit);
-        format!("{motion}; from cycle to cycle the force differs by {force} rms")
+    pub(super) fn finding(&self) -> Finding {
+        Finding::Repeats {
+            period_s: self.period_s,
+            cycles: self.cycles,
+            force: self.force_repeatability,
+            force_unit: self.force_unit.clone(),
+        }
     }
 }
 

@@ -5,13 +5,15 @@ use serde::{Deserialize, Serialize};
 use super::gaps::BRIDGED;
 use super::{Finding, neighbours};
 use crate::measurement::Recording;
-use crate::measurement::quantity::{percent, quantity};
 
 /// A step this many intervals long is a gap.
 const GAP: f64 = 2.5;
 
 /// A sampling interval longer than this is probably in another unit, s.
 const SLOW: f64 = 0.2;
+
+/// Intervals that vary by more than this share of the median are told.
+const JITTER: f64 = 0.05;
 
 /// A hole in the samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,34 +66,18 @@ impl Sampling {
 
     pub(super) fn findings(&self, findings: &mut Vec<Finding>) {
         if let Some(longest) = self.gaps.first() {
-            findings.push(Finding::warning(format!(
-                "{} in the samples, the longest {} at {:.3} s: {}",
-                if self.gaps.len() == 1 {
-                    "a gap".to_owned()
-                } else {
-                    format!("{} gaps", self.gaps.len())
-                },
-                quantity(longest.length_s, "s"),
-                longest.at_s,
-                if longest.length_s > BRIDGED * self.interval_s {
-                    "the recording is cut into segments there"
-                } else {
-                    "bridged by straight lines"
-                },
-            )));
+            findings.push(Finding::Gaps {
+                count: self.gaps.len(),
+                longest: longest.clone(),
+                ends_a_segment: longest.length_s > BRIDGED * self.interval_s,
+            });
         }
-        if self.interval_s > SLOW {
-            findings.push(Finding::warning(format!(
-                "one sample every {} is slow for a drive: is the time really in seconds?",
-                quantity(self.interval_s, "s"),
-            )));
+        let interval_s = self.interval_s;
+        if interval_s > SLOW {
+            findings.push(Finding::SlowSampling { interval_s });
         }
-        if self.jitter > 0.05 {
-            findings.push(Finding::warning(format!(
-                "the sampling interval varies by {} around {}",
-                percent(self.jitter),
-                quantity(self.interval_s, "s"),
-            )));
+        if self.jitter > JITTER {
+            findings.push(Finding::Jitter { jitter: self.jitter, interval_s });
         }
     }
 }

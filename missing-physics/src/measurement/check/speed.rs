@@ -4,10 +4,13 @@ use serde::{Deserialize, Serialize};
 
 use super::{ChannelCheck, Finding};
 use crate::measurement::Recording;
-use crate::measurement::quantity::{percent, quantity};
 
 /// Below this share of the top speed the motion counts as slow, and a change of sign as noise.
 const SLOW: f64 = 0.02;
+/// Fewer changes of direction than this are few.
+const FEW: usize = 4;
+/// One count a sample is coarse from this share of the top speed on.
+const COARSE: f64 = 0.2;
 
 /// How the axis moves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,44 +66,25 @@ impl Speed {
             return;
         }
         if self.forward_share == 0.0 || self.backward_share == 0.0 {
-            findings.push(Finding::warning(
-                "the axis moves in one direction only: friction and a constant force cannot be told apart"
-                    .to_owned(),
-            ));
-        } else if self.reversals < 4 {
-            findings.push(Finding::warning(format!(
-                "only {} changes of direction: what happens there is seen too rarely to be sure of",
-                self.reversals
-            )));
+            findings.push(Finding::OneDirection);
+        } else if self.reversals < FEW {
+            findings.push(Finding::FewReversals { reversals: self.reversals });
         }
-        if let Some(quantum) = position.quantum {
-            findings.push(resolution(quantum, interval, self, &position.unit));
+        let (top, unit) = (self.top, self.unit.clone());
+        if let Some(count) = position.quantum {
+            let step = count / interval;
+            findings.push(Finding::Counts {
+                count,
+                unit: position.unit.clone(),
+                step,
+                top,
+                speed_unit: unit.clone(),
+                coarse: step > COARSE * top,
+            });
         }
-        findings.push(Finding::info(format!(
-            "speeds up to {}, {} of the samples below {}, {} changes of direction",
-            quantity(self.top, &self.unit),
-            percent(self.slow_share),
-            quantity(SLOW * self.top, &self.unit),
-            self.reversals,
-        )));
+        let (slow, slow_share, reversals) = (SLOW * top, self.slow_share, self.reversals);
+        findings.push(Finding::Speeds { top, slow, unit, slow_share, reversals });
     }
-}
-
-fn resolution(quantum: f64, interval: f64, speed: &Speed, unit: &str) -> Finding {
-    let step = quantum / interval;
-    let text = format!(
-        "one count of the position is {}; one count a sample is {}",
-        quantity(quantum, unit),
-        quantity(step, &speed.unit),
-    );
-    if step > 0.2 * speed.top {
-        let text = format!(
-            "{text}, which is coarse against a top speed of {}",
-            quantity(speed.top, &speed.unit)
-        );
-        return Finding::warning(text);
-    }
-    Finding::info(text)
 }
 
 /// Half the width of a difference in samples: at least two, and so many that at half the typical
