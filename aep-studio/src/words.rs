@@ -365,11 +365,22 @@ fn at(value: f64) -> String {
 pub const CONFIRMATION: &str = "parameters as found, but for what belongs to a recording; 'gain anew': all of them \
                                 fitted there";
 
+/// The head of a column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Heading {
+    /// What stands there.
+    pub text: String,
+    /// Whether numbers stand below it.
+    pub numbers: bool,
+}
+
 /// Headings of the table of a confirmation.
-pub fn confirmation_headings(discovery: &Discovery) -> Vec<String> {
-    let errors = errors(discovery).into_iter().map(|name| name.heading());
-    let rest = ["holds", "gain anew", "p-value"].map(str::to_owned);
-    std::iter::once("rung".to_owned()).chain(errors).chain(rest).collect()
+pub fn confirmation_headings(discovery: &Discovery) -> Vec<Heading> {
+    let heading = |text: &str, numbers| Heading { text: text.to_owned(), numbers };
+    let errors = errors(discovery).into_iter().map(|name| heading(&name.heading(), true));
+    let rest = [("holds", false), ("gain anew", true), ("p-value", true)];
+    let rest = rest.map(|(text, numbers)| heading(text, numbers));
+    std::iter::once(heading("model", false)).chain(errors).chain(rest).collect()
 }
 
 /// Its rows, one for each rung.

@@ -7,7 +7,7 @@ use aep_data::{Format, PLACE};
 /// Where results go point by point.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct SeriesArgs {
-    /// Write a row for every sample: time, what was measured, prediction and residual of every rung, regime, whether the
+    /// Write a row for every sample: time, what was measured, prediction and residual of every model, regime, whether the
     /// sample took part and why not
     #[arg(long, value_name = "FILE.csv|FILE.parquet", value_parser = path, help_heading = "Results")]
     series: Option<PathBuf>,

@@ -51,8 +51,8 @@ pub struct Args {
     #[arg(long, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
     /// False alarms on this very axis: search N surrogates of the recording (what the last model would have made, its own
-    /// errors in another order), which hold nothing to find. Each takes as long as the
-    /// first rung of a discovery
+    /// errors in another order), which hold nothing to find. Each takes as long as
+    /// the search for a first effect
     #[arg(long, value_name = "N")]
     surrogates: Option<NonZeroUsize>,
     /// Where the data cannot tell effects apart: write a motion that would (time and position)
@@ -97,7 +97,7 @@ Examples:
   aep discover run.csv --model-force tau_model           what your own model lacks
   aep discover arm.csv --axes all --html arm.html        six joints in one file, one table
   aep discover run.csv --explain                         everything that was compared, and why
-  aep discover run.csv --series points.parquet           prediction and residual of every rung, sample by sample
+  aep discover run.csv --series points.parquet           prediction and residual of every model, sample by sample
   aep discover run.csv --surrogates 20                   how often it would name what is not there
   aep discover run.csv --experiment next.csv             where it is ambiguous: what to run next
   aep discover a.csv b.csv --validate c.csv d.csv        two runs as one measurement, two to confirm";
@@ -265,7 +265,7 @@ fn story(
             [] => "nothing is added".to_owned(),
             effects => format!("{} is added", effects.join(" + ")),
         };
-        text += &heading(&format!("Which effect is missing, rung {}: {outcome}", rung + 1));
+        text += &heading(&format!("Which effect is missing, step {}: {outcome}", rung + 1));
         if let Some(why) = words::why_nothing(discovery, rung, thresholds) {
             text += &output::why(&why);
         }

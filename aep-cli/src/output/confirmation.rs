@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use aep_studio::words;
+use aep_studio::words::{self, Heading};
 use missing_physics::Discovery;
 use missing_physics::report::{Confirmed, Surrogates};
 
@@ -21,11 +21,9 @@ pub fn surrogates(found: &Surrogates) -> String {
 /// The rungs of a discovery on recordings that had no part in it.
 pub fn confirmation(discovery: &Discovery, confirmed: &Confirmed) -> String {
     let headings = words::confirmation_headings(discovery);
-    let align = |heading: &str| {
-        if matches!(heading, "rung" | "holds") { Align::Left } else { Align::Right }
-    };
+    let align = |heading: &Heading| if heading.numbers { Align::Right } else { Align::Left };
     let columns: Vec<(&str, Align)> =
-        headings.iter().map(|heading| (heading.as_str(), align(heading))).collect();
+        headings.iter().map(|heading| (heading.text.as_str(), align(heading))).collect();
     let mut table = Table::new(&columns);
     for row in words::confirmation_rows(discovery, confirmed) {
         table.row(row);

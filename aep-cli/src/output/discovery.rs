@@ -151,7 +151,7 @@ fn ladder_ahead(discovery: &Discovery, first: &str) -> String {
     let headings: Vec<String> =
         names.iter().map(|name| format!("{}\nerror", name.quantity)).collect();
     let mut columns = vec![
-        ("rung", Align::Left),
+        ("model", Align::Left),
         ("", Align::Bar),
         ("prediction\nerror\n(x sensors)", Align::Right),
         ("gain\n(nats)", Align::Right),
@@ -204,7 +204,7 @@ pub fn ladder(discovery: &Discovery, first: &str) -> String {
         .collect();
     let tested = discovery.ladder.iter().any(|rung| rung.p_value.is_some());
     let of = |fitted: bool| {
-        let mut columns = vec![("rung", Align::Left), ("", Align::Bar)];
+        let mut columns = vec![("model", Align::Left), ("", Align::Bar)];
         for heading in &headings {
             columns.push((heading, Align::Right));
             if fitted {

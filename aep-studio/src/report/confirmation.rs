@@ -12,11 +12,11 @@ pub(super) fn section(discovery: &Discovery) -> String {
     };
     let headings: Vec<String> = words::confirmation_headings(discovery)
         .iter()
-        .map(|heading| match heading.as_str() {
-            "rung" => "model".to_owned(),
-            "holds" => heading.clone(),
-            number => format!("#{number}"),
-        })
+        .map(
+            |heading| {
+                if heading.numbers { format!("#{}", heading.text) } else { heading.text.clone() }
+            },
+        )
         .collect();
     let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
     let rows: Vec<Vec<String>> = words::confirmation_rows(discovery, confirmed)
