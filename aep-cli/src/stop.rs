@@ -1,4 +1,5 @@
-//! Ctrl-C: the first one asks for an end after the present step, the second one ends at once.
+//! Ctrl-C: the first one asks for an end after the present step, the second one ends at once. So does the first one while
+//! there is nothing to keep.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -6,17 +7,36 @@ use std::time::{Duration, Instant};
 use crate::failure::{Failure, INTERRUPTED};
 
 static STOP: AtomicBool = AtomicBool::new(false);
+static AT_ONCE: AtomicBool = AtomicBool::new(false);
+
+/// What was found in a recording of more samples than this cannot be told within a second.
+const SOON_TOLD: usize = 1_000_000;
 
 /// The flag, watched from now on.
 pub fn flag() -> &'static AtomicBool {
     // A second call fails because the first one has done it already.
     let _ = ctrlc::set_handler(|| {
+        if AT_ONCE.load(Ordering::Relaxed) {
+            eprintln!("\ninterrupted");
+            std::process::exit(i32::from(INTERRUPTED));
+        }
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
         eprintln!("\nstopping after this step; what was found is kept (Ctrl-C again ends at once)");
     });
     &STOP
+}
+
+/// From now on Ctrl-C ends at once: nothing was found yet.
+pub fn at_once() {
+    AT_ONCE.store(true, Ordering::Relaxed);
+    flag();
+}
+
+/// From now on what was found is told after Ctrl-C, unless that would take long as there are so many samples.
+pub fn keeping(samples: usize) {
+    AT_ONCE.store(samples > SOON_TOLD, Ordering::Relaxed);
 }
 
 /// What ends a command early: Ctrl-C, or the end of its time.

@@ -20,7 +20,7 @@ use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
-use crate::stop::Watch;
+use crate::stop::{self, Watch};
 use crate::{outputs, series};
 
 /// Find out which physical effect a model of the drive lacks
@@ -118,6 +118,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             ("--experiment", args.experiment.as_deref()),
         ],
     )?;
+    stop::at_once();
     let loaded = match args.data.as_slice() {
         [] => crate::example::load()?,
         paths => args.mapping.read_all(paths)?,
@@ -139,6 +140,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
     progress.say("fitting the base model");
     progress.within(settings.time_limit);
+    stop::keeping(loaded.recording.len());
     let mut discovery = discover(&family, &settings, &mut progress)?;
     let mut more = Vec::new();
     let mut confirmed = String::new();

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::output::{self, Columns, heading};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
-use crate::stop::Watch;
+use crate::stop::{self, Watch};
 
 /// Most effects that one experiment is to tell apart.
 const RIVALS: usize = 3;
@@ -54,6 +54,7 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    stop::at_once();
     let loaded = args.data.read()?;
     let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;
     let named = model.effects().iter().map(|name| (*name).to_owned()).collect();
@@ -70,6 +71,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     progress.say("fitting the model");
     progress.within(settings.time_limit);
+    stop::keeping(loaded.recording.len());
     let discovery = suggest(&family, &settings, &mut progress)?;
     let candidates = discovery.ranking.first().cloned().unwrap_or_default();
     let better = settings.thresholds.better;

@@ -1,7 +1,7 @@
 //! What a user should know beside a verdict, in sentences.
 
 use missing_physics::Hold;
-use missing_physics::measurement::quantity::quantity;
+use missing_physics::measurement::quantity::{percent, quantity};
 use missing_physics::report::{Disagreement, Lacking, Remark};
 
 use super::refusals::refusal;
@@ -22,6 +22,10 @@ pub fn remark(remark: &Remark) -> String {
             effects.join(" + "),
             lacking.as_ref().map_or_else(String::new, force),
             because.as_ref().map_or_else(String::new, |why| format!(" ({})", no_cause(why))),
+        ),
+        Remark::Unconfirmed { share } => format!(
+            "Time ran out: what is said was found on parts that are {} of the recording, and was not asked of all of it.",
+            percent(*share)
         ),
         Remark::SecondLookCut => {
             "Time ran out before it was known whether other effects, which hide each other, do as much."

@@ -18,6 +18,7 @@ mod stale;
 mod surrogate;
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use missing_physics::{Hold, Recording};
 use rayon::prelude::*;
@@ -76,7 +77,8 @@ pub struct Predictor {
     counted: Vec<usize>,
     /// Process noise of the ladder, N.
     ladder: Vec<f64>,
-    gains: Vec<Gain>,
+    /// One for each process noise, made when it is first asked for: of a long recording that is searched in part few are.
+    gains: Vec<OnceLock<Gain>>,
     /// Mass and damping that the gains are made for.
     plant: (f64, f64),
     fed_back: f64,
@@ -141,18 +143,22 @@ impl Predictor {
     /// Makes the gains for a plant of `mass` and `damping`.
     pub fn tune(&mut self, mass: f64, damping: f64) {
         self.plant = (mass, damping);
-        let each = |process: &f64| {
-            let force = process.hypot(self.noise.force);
+        self.gains = vec![OnceLock::new(); self.ladder.len()];
+    }
+
+    /// The gain for a process noise of the ladder.
+    fn gain_of(&self, rung: usize) -> &Gain {
+        self.gains[rung].get_or_init(|| {
+            let force = self.ladder[rung].hypot(self.noise.force);
             gains(
                 &self.time,
                 &self.segments,
                 &self.counted,
                 &self.stale,
-                (mass, damping),
+                self.plant,
                 (self.noise.position, force),
             )
-        };
-        self.gains = self.ladder.iter().map(each).collect();
+        })
     }
 
     /// The same on pieces of about `PIECE` s, spread over the recording, that have `most` samples together; nothing
@@ -246,7 +252,7 @@ impl Predictor {
 
     /// Innovation that the sensors alone make: the smallest process noise beside that of the recorded force.
     pub fn budget(&self) -> f64 {
-        self.gains[1.min(self.gains.len() - 1)].expected
+        self.gain_of(1.min(self.gains.len() - 1)).expected
     }
 
     /// Prediction errors of models of the same effects, each at its own setting, at the samples that count: m or
@@ -300,7 +306,7 @@ impl Predictor {
 
     /// The gain of a setting while the axis moves.
     fn gain(&self, setting: usize) -> &Gain {
-        &self.gains[setting % self.ladder.len()]
+        self.gain_of(setting % self.ladder.len())
     }
 
     /// Runs models of the same effects along the recording, each at its own setting; tells what happens at every
@@ -331,7 +337,7 @@ impl Predictor {
         let rungs = self.ladder.len();
         let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
         let at_rest: Vec<&Gain> =
-            trials.iter().map(|(_, s)| &self.gains[if *s < rungs { *s } else { 0 }]).collect();
+            trials.iter().map(|(_, s)| self.gain_of(if *s < rungs { *s } else { 0 })).collect();
         let step = if two { STEP_OF_TWO } else { STEP };
         let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
         let all = models.len();

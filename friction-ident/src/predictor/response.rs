@@ -48,7 +48,7 @@ impl Predictor {
         moving: &[bool],
         motion: &[Motion],
     ) -> [Vec<f32>; 2] {
-        let gain = &self.gains[setting % self.ladder.len()];
+        let gain = self.gain(setting);
         let mut errors = [0, 1].map(|_| Vec::with_capacity(self.counted.len()));
         let mut counted = self.counted.iter().copied().peekable();
         for segment in &self.segments {

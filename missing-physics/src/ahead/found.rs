@@ -89,15 +89,19 @@ impl Found {
     }
 
     /// Brings what was found on a part to all of the recording: every rung is refitted there, and what gains too little
-    /// or no more than chance goes.
-    pub fn confirm<F: ModelFamily + ?Sized>(
-        &mut self,
+    /// or no more than chance goes. Nothing where it is told to stop before that is done.
+    pub fn confirmed<F: ModelFamily + ?Sized>(
+        mut self,
         family: &F,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
-    ) {
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Self> {
+        if stop() {
+            return None;
+        }
         let comparison = Comparison::new(family, ahead);
-        let fitter = Fitter::new(family, ahead);
+        let fitter = Fitter::new(family, ahead).stopped_by(stop);
         let whole = |model: &Fitted| {
             let setting = fit::best_setting(ahead, model);
             fitter.fit(model.clone(), setting, IN_FULL)
@@ -110,6 +114,9 @@ impl Found {
         self.base = whole(&self.base.model);
         self.rungs = self.rungs.par_iter().map(|rung| whole(&rung.model)).collect();
         while let Some(top) = self.rungs.last() {
+            if stop() {
+                return None;
+            }
             // All of the recording may take an effect to where it is none.
             let place = |term: usize| self.added.iter().position(|t| main(*t) == main(term));
             let refused = refused(family, ahead, &self.base, top);
@@ -152,7 +159,25 @@ impl Found {
         }
         let before = std::iter::once(&self.base).chain(&self.rungs);
         self.gains = before.zip(&self.rungs).map(|(a, b)| comparison.compare(a, b)).collect();
+        // What was cut short is no fit.
+        if stop() {
+            return None;
+        }
         self.place(family, ahead, thresholds);
+        Some(self)
+    }
+
+    /// What was found on a `share` of the recording, where time ran out before all of it was asked: gains are those that
+    /// they stand for on all of it.
+    #[must_use]
+    pub fn unconfirmed(mut self, share: f64) -> Self {
+        for difference in self.gains.iter_mut().chain(&mut self.costs) {
+            difference.nats /= share;
+            difference.error /= share;
+        }
+        self.stopped = true;
+        self.remarks.push(Remark::Unconfirmed { share });
+        self
     }
 
     /// Where the last model fails, and whether it does at all.
@@ -235,6 +260,8 @@ pub struct Ranked {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use super::*;
     use crate::ahead::testing::{BEAT, Plant, WAVE};
     use crate::report::Fault;
@@ -318,10 +345,10 @@ mod tests {
         let whole = Plant::new(1, &[(WAVE, &[0.05])]);
         let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
         let rungs = vec![node(&[(BEAT, &[0.03])]), node(&[(BEAT, &[0.03]), (WAVE, &[0.05])])];
-        let mut found = Found { added: vec![BEAT, WAVE], rungs, ..Found::of(node(&[])) };
+        let found = Found { added: vec![BEAT, WAVE], rungs, ..Found::of(node(&[])) };
         // Nothing is known of chance here.
         let thresholds = Thresholds { better: 20.0, chance: 1.0, ..Thresholds::default() };
-        found.confirm(&whole, &whole, &thresholds);
+        let found = found.confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
         assert_eq!(found.added, [WAVE]);
         assert_eq!(found.rungs.len(), 1);
         assert!(!found.rungs[0].model.terms.contains(&BEAT));
@@ -335,12 +362,38 @@ mod tests {
         whole.none = Some(WAVE);
         let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
         let rungs = vec![node(&[(WAVE, &[0.05])])];
-        let mut found = Found { added: vec![WAVE], rungs, ..Found::of(node(&[])) };
-        found.confirm(&whole, &whole, &Thresholds::default());
+        let found = Found { added: vec![WAVE], rungs, ..Found::of(node(&[])) };
+        let found = found.confirmed(&whole, &whole, &Thresholds::default(), &|| false).unwrap();
         assert!(found.added.is_empty() && found.rungs.is_empty());
         let [Remark::NotNamed { effects, .. }] = &found.remarks[..] else {
             panic!("{:?}", found.remarks)
         };
         assert_eq!(effects, &["wave"]);
+    }
+
+    #[test]
+    fn what_time_does_not_allow_to_be_asked_of_all_of_the_recording_is_told_as_such() {
+        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        let node = |terms| fit::evaluated(&plant, Plant::model(terms), 0);
+        let gain = Difference { nats: 30.0, error: 3.0 };
+        let on_part = || Found {
+            added: vec![WAVE],
+            rungs: vec![node(&[(WAVE, &[0.05])])],
+            gains: vec![gain],
+            costs: vec![gain],
+            ..Found::of(node(&[]))
+        };
+        // Told to stop at once, and after some steps.
+        for after in [0, 3] {
+            let asked = AtomicUsize::new(0);
+            let stop = || asked.fetch_add(1, Ordering::Relaxed) >= after;
+            let cut = on_part().confirmed(&plant, &plant, &Thresholds::default(), &stop);
+            assert!(cut.is_none(), "{after}");
+        }
+        let told = on_part().unconfirmed(0.25);
+        assert_eq!((told.added.as_slice(), told.stopped), (&[WAVE][..], true));
+        assert_eq!(told.gains, [Difference { nats: 120.0, error: 12.0 }]);
+        assert_eq!(told.costs, told.gains);
+        assert_eq!(told.remarks, [Remark::Unconfirmed { share: 0.25 }]);
     }
 }

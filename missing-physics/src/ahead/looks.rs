@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::beam::{Climb, Search, Tell};
 use super::compare::Comparison;
-use super::fit::{Fitter, evaluated};
+use super::fit::{Fitter, best_setting, evaluated};
 use super::found::Found;
 use super::node::Node;
 use super::report::Report;
@@ -104,7 +104,12 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
 
     /// What is searched.
     fn searched(&self) -> &dyn Ahead {
-        self.part.as_deref().unwrap_or(&*self.whole)
+        self.asked(true)
+    }
+
+    /// All of it, or what is searched.
+    fn asked(&self, on_part: bool) -> &dyn Ahead {
+        self.part.as_deref().filter(|_| on_part).unwrap_or(&*self.whole)
     }
 
     /// The same, its errors judged by what an autoregression leaves of them.
@@ -145,6 +150,8 @@ struct Begun<'a, F: ModelFamily + ?Sized> {
     there: Option<(Pursuit<'a, F>, f64)>,
     thresholds: Thresholds,
     stop: &'a (dyn Fn() -> bool + Sync),
+    /// When time is up.
+    until: Option<Instant>,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
@@ -161,18 +168,30 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
 
     /// What is found in the reading that stands: on all of the recording, judged.
     fn finished(self) -> Sought<'a, F> {
-        let thresholds = self.thresholds;
-        let (reading, mut found) = self.found();
-        if reading.part.is_some() {
-            found.confirm(reading.family, &*reading.whole, &thresholds);
-        }
-        found.judge(reading.family, &*reading.whole, &thresholds);
-        Sought { reading, found }
+        let (thresholds, until, stop) = (self.thresholds, self.until, self.stop);
+        let (reading, found) = self.found();
+        let (family, whole) = (reading.family, &*reading.whole);
+        let Some(part) = &reading.part else {
+            return Sought { reading, found, on_part: false }.judged(&thresholds);
+        };
+        // No less than this is asked of all of the recording, and takes so much longer there.
+        let models = (1 + found.rungs.len()) as u32;
+        let in_time = until.is_none_or(|until| {
+            let began = Instant::now();
+            best_setting(&**part, &found.top().0.model);
+            let each = began.elapsed().div_f64(part.share().max(f64::MIN_POSITIVE));
+            Instant::now() + LEAST_ASKED * models * each < until
+        });
+        let confirmed =
+            in_time.then(|| found.clone().confirmed(family, whole, &thresholds, stop)).flatten();
+        let on_part = confirmed.is_none();
+        let found = confirmed.unwrap_or_else(|| found.unconfirmed(part.share()));
+        Sought { reading, found, on_part }.judged(&thresholds)
     }
 
     /// What is found in the reading that stands, as far as it was searched.
     fn found(self) -> (&'a Reading<'a, F>, Found) {
-        let Self { here, there, thresholds, stop } = self;
+        let Self { here, there, thresholds, stop, .. } = self;
         let Some((there, nats)) = there else {
             return (here.reading, here.search.finish(here.climb));
         };
@@ -200,14 +219,25 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
 
 /// Effects that a second look goes up to.
 const PAIR: usize = 2;
+/// To bring a model to all of the recording takes at least so many times as long as to find its setting there.
+const LEAST_ASKED: u32 = 4;
 
 /// What was found in a reading.
 struct Sought<'a, F: ModelFamily + ?Sized> {
     reading: &'a Reading<'a, F>,
     found: Found,
+    /// Whether it was not asked of all of the recording.
+    on_part: bool,
 }
 
 impl<F: ModelFamily + ?Sized> Sought<'_, F> {
+    /// The same without names that are not the cause.
+    fn judged(mut self, thresholds: &Thresholds) -> Self {
+        let Reading { family, .. } = self.reading;
+        self.found.judge(*family, self.reading.asked(self.on_part), thresholds);
+        self
+    }
+
     /// Whether so few effects leave nothing that no other look can do with less.
     fn is_pair(&self) -> bool {
         self.found.complete && self.found.added.len() <= PAIR
@@ -263,6 +293,7 @@ impl<'a> Run<'a> {
             there: there.map(|(there, nats)| (self.pursuit(there), nats)),
             thresholds: self.thresholds.in_part(here.whole.asked()),
             stop: self.stop,
+            until: self.settings.time_limit.and_then(|limit| self.started.checked_add(limit)),
         }
     }
 
@@ -294,9 +325,10 @@ impl<'a> Run<'a> {
     /// What was found, as a discovery.
     fn told<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
         (self.tell)(&Event::Finishing);
-        let Sought { reading, found } = sought;
-        let (family, ahead) = (reading.family, &*reading.whole);
-        let mut discovery = Report { family, ahead, settings: self.settings, found }.discovery();
+        let Sought { reading, found, on_part } = sought;
+        let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
+        let report = Report { family, ahead, settings, found, brief: on_part };
+        let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());
         discovery.seed = self.settings.seed;
         discovery.wall_s = self.started.elapsed().as_secs_f64();
@@ -328,7 +360,7 @@ mod tests {
     ) -> Sought<'a, Plant> {
         let base = evaluated(plant, Plant::model(&[]), 0);
         let found = Found { added: vec![WAVE; effects], complete, ..Found::of(base) };
-        Sought { reading, found }
+        Sought { reading, found, on_part: false }
     }
 
     #[test]

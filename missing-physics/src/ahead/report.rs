@@ -27,6 +27,8 @@ pub struct Report<'a, F: ModelFamily + ?Sized> {
     pub ahead: &'a dyn Ahead,
     pub settings: &'a Settings<'a>,
     pub found: Found,
+    /// Whether time is up before a long recording was asked in full: what takes long for people to see is left out.
+    pub brief: bool,
 }
 
 impl<F: ModelFamily + ?Sized> Report<'_, F> {
@@ -45,6 +47,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let verdict = self.verdict(&budget, !ambiguous.is_empty());
         let motion = family.motion();
         let places = |fit: &Fit| {
+            if self.brief {
+                return Vec::new();
+            }
             let weights = weights(family.doubt(), &fit.residual);
             let seed = self.settings.seed;
             let view = Look { residual: &fit.residual, weights: &weights, motion: &motion, seed };
@@ -97,7 +102,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             surrogates: None,
             plots: family.plots(&base_fit.model, &last_fit.model),
         };
-        diagnosis::attach(family, &base_fit, last_fit, self.settings.seed, &mut discovery);
+        if !self.brief {
+            diagnosis::attach(family, &base_fit, last_fit, self.settings.seed, &mut discovery);
+        }
         discovery
     }
 

@@ -96,6 +96,8 @@ pub struct Recording {
     time: Vec<f64>,
     channels: Vec<Channel>,
     segments: Vec<Range<usize>>,
+    /// Median step inside segments, s.
+    interval: f64,
     /// Nothing where nobody stated it.
     hold: Option<Hold>,
 }
@@ -140,7 +142,8 @@ impl Recording {
         for range in &segments {
             check_increasing(&time, range)?;
         }
-        Ok(Self { name: name.into(), time, channels, segments, hold: None })
+        let interval = interval(&time, &segments);
+        Ok(Self { name: name.into(), time, channels, segments, interval, hold: None })
     }
 
     /// Says how the input acts between samples.
@@ -215,17 +218,19 @@ impl Recording {
 
     /// Median sampling interval inside segments, s.
     pub fn interval(&self) -> f64 {
-        let mut steps: Vec<f64> = self
-            .segments
-            .iter()
-            .flat_map(|range| self.time[range.clone()].windows(2).map(|pair| pair[1] - pair[0]))
-            .collect();
-        if steps.is_empty() {
-            return 0.0;
-        }
-        let middle = steps.len() / 2;
-        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+        self.interval
     }
+}
+
+/// The median step inside segments; 0 where there is none.
+fn interval(time: &[f64], segments: &[Range<usize>]) -> f64 {
+    let steps = segments.iter().flat_map(|range| time[range.clone()].windows(2));
+    let mut steps: Vec<f64> = steps.map(|pair| pair[1] - pair[0]).collect();
+    if steps.is_empty() {
+        return 0.0;
+    }
+    let middle = steps.len() / 2;
+    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 fn check_length(channel: &str, values: usize, samples: usize) -> Result<(), RecordingError> {

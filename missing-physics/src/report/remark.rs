@@ -33,6 +33,11 @@ pub enum Remark {
         /// The effect.
         effect: String,
     },
+    /// Time ran out before what a search on parts of the recording found was asked of all of it.
+    Unconfirmed {
+        /// Share of the recording that was searched.
+        share: f64,
+    },
     /// Effects come nearest and are not the cause.
     NotTheCause {
         /// The effects.

@@ -163,9 +163,9 @@ fn a_model_of_which_more_is_left_than_the_sensors_make_is_incomplete() {
 fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() {
     let part = Plant::new(5, &[(WAVE, &[0.05]), (BEAT, &[0.03])]);
     let whole = Plant::new(5, &[(WAVE, &[0.05])]);
-    let mut found = found(&part, Thresholds { beam: 3, ..narrow() }, 2);
+    let found = found(&part, Thresholds { beam: 3, ..narrow() }, 2);
     assert_eq!(found.added, [WAVE, BEAT]);
-    found.confirm(&whole, &whole, &narrow());
+    let found = found.confirmed(&whole, &whole, &narrow(), &never).unwrap();
     assert_eq!(found.added, [WAVE]);
     assert_eq!((found.rungs.len(), found.gains.len(), found.costs.len()), (1, 1, 1));
     assert!(found.complete);
