@@ -1,0 +1,32 @@
+"""What does your model lack? Missing physics from measurements, and an evolutionary optimizer.
+
+:func:`discover` tells which physical effect a drive's model lacks; :func:`minimize` minimises any function. See docs/python.md.
+"""
+
+from __future__ import annotations
+
+from ._aep import __version__
+from ._minimize import minimize
+from ._optimizer import Optimizer
+from ._result import Interrupted, Result, WorkersLost
+from ._trials import Trials, trials
+
+
+def methods() -> dict[str, str]:
+    """The methods of :func:`minimize` by name, each with what it is."""
+    from . import _aep
+
+    return dict(_aep.methods())
+
+
+__all__ = [
+    "Interrupted",
+    "Optimizer",
+    "Result",
+    "Trials",
+    "WorkersLost",
+    "__version__",
+    "methods",
+    "minimize",
+    "trials",
+]
