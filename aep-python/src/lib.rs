@@ -2,11 +2,17 @@
 //! calls, with its documentation, is in `python/aep`; this module is private to it.
 
 mod costs;
+mod discover;
 mod failure;
+mod found;
 mod minimize;
 mod optimizer;
+mod own_family;
+mod reading;
+mod search;
 mod space;
 mod trials;
+mod watched;
 
 use pyo3::prelude::*;
 
@@ -16,9 +22,17 @@ mod _aep {
     #[allow(non_upper_case_globals)]
     const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
+    use super::discover::discover;
+    #[pymodule_export]
+    use super::found::Found;
+    #[pymodule_export]
     use super::minimize::{methods, minimize};
     #[pymodule_export]
     use super::optimizer::Optimizer;
+    #[pymodule_export]
+    use super::own_family::{OwnFound, discover_own};
+    #[pymodule_export]
+    use super::reading::Data;
     #[pymodule_export]
     use super::space::Space;
     #[pymodule_export]

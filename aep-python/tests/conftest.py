@@ -1,3 +1,6 @@
+import os
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -20,3 +23,40 @@ def same(first, second):
         second.nit,
         second.stop,
     )
+
+
+ROOT = Path(__file__).parents[2]
+EXAMPLE = ROOT / "aep-cli" / "examples" / "hidden" / "recording.csv"
+
+
+@pytest.fixture(scope="session")
+def command():
+    """The command `aep`: `AEP_BINARY`, or the one that was built last."""
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    found = os.environ.get("AEP_BINARY") or shutil.which("aep", path=str(target / "release"))
+    if not found:
+        pytest.skip("the command is not built: cargo build --release -p aep-cli")
+
+    def run(*words):
+        told = subprocess.run([found, *map(str, words)], capture_output=True, text=True)
+        assert told.returncode == 0, told.stderr
+        return told.stdout
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def found():
+    """The example with its hidden effect, searched once."""
+    import aep
+
+    return aep.discover(EXAMPLE)
+
+
+@pytest.fixture(scope="session")
+def columns():
+    """The example as a dictionary of arrays."""
+    import numpy as np
+
+    table = np.genfromtxt(EXAMPLE, delimiter=",", names=True)
+    return {name: table[name] for name in table.dtype.names}

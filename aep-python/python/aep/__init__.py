@@ -6,6 +6,9 @@
 from __future__ import annotations
 
 from ._aep import __version__
+from ._data import Effect, load
+from ._discover import Found, discover
+from ._family import Family, OwnFound, Term, discover_own
 from ._minimize import minimize
 from ._optimizer import Optimizer
 from ._result import Interrupted, Result, WorkersLost
@@ -20,12 +23,20 @@ def methods() -> dict[str, str]:
 
 
 __all__ = [
+    "Effect",
+    "Family",
+    "Found",
     "Interrupted",
     "Optimizer",
+    "OwnFound",
     "Result",
+    "Term",
     "Trials",
     "WorkersLost",
     "__version__",
+    "discover",
+    "discover_own",
+    "load",
     "methods",
     "minimize",
     "trials",
