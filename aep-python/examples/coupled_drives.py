@@ -7,7 +7,7 @@ import numpy as np
 
 import aep
 
-STEP, FINE = 0.02, 4
+STEP, FINE = 0.02, 2
 
 
 class Drives(aep.Family):

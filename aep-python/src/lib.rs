@@ -1,8 +1,11 @@
 //! The compiled part of the Python package `aep`: the engine's numbers, kinds and sentences as Python objects. What a user
 //! calls, with its documentation, is in `python/aep`; this module is private to it.
 
+#![expect(clippy::needless_pass_by_value, reason = "arguments come from Python by value")]
+
 mod costs;
 mod discover;
+mod drive;
 mod failure;
 mod found;
 mod minimize;
@@ -23,6 +26,8 @@ mod _aep {
     const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
     use super::discover::discover;
+    #[pymodule_export]
+    use super::drive::{challenge, compare, effects, experiment, extend, simulate, suggest};
     #[pymodule_export]
     use super::found::Found;
     #[pymodule_export]

@@ -18,7 +18,7 @@ use crate::reading::Data;
 /// What is asked, and what is known of the drive.
 #[derive(FromPyObject)]
 pub struct Search {
-    base: Option<Vec<String>>,
+    pub base: Option<Vec<String>>,
     fit_model_gain: bool,
     exclude: Vec<String>,
     pub seed: u64,

@@ -27,7 +27,13 @@ pub fn watched<E: Send, R: Send>(
         thread::scope(|scope| {
             let (send, receive) = channel();
             let worker = thread::Builder::new().stack_size(STACK);
-            let worker = worker.spawn_scoped(scope, move || work(send))?;
+            let worker = worker.spawn_scoped(scope, move || {
+                // Its end is the end of the work, whatever the work does with its own.
+                let alive = send.clone();
+                let result = work(send);
+                drop(alive);
+                result
+            })?;
             let mut raised = None;
             loop {
                 let event = match receive.recv_timeout(PATIENCE) {

@@ -8,7 +8,9 @@ from __future__ import annotations
 from ._aep import __version__
 from ._data import Effect, load
 from ._discover import Found, discover
+from ._drive import challenge, compare, effects, experiment, extend, simulate, suggest
 from ._family import Family, OwnFound, Term, discover_own
+from ._fleet import Fleet, discover_many
 from ._minimize import minimize
 from ._optimizer import Optimizer
 from ._result import Interrupted, Result, WorkersLost
@@ -25,6 +27,7 @@ def methods() -> dict[str, str]:
 __all__ = [
     "Effect",
     "Family",
+    "Fleet",
     "Found",
     "Interrupted",
     "Optimizer",
@@ -34,10 +37,18 @@ __all__ = [
     "Trials",
     "WorkersLost",
     "__version__",
+    "challenge",
+    "compare",
     "discover",
+    "discover_many",
     "discover_own",
+    "effects",
+    "experiment",
+    "extend",
     "load",
     "methods",
     "minimize",
+    "simulate",
+    "suggest",
     "trials",
 ]
