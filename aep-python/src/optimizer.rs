@@ -1,6 +1,7 @@
 //! Ask and tell, for whoever owns the loop.
 
 use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use aep_core::{Algorithm, Start, checkpoint};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
@@ -11,10 +12,16 @@ use crate::minimize::method;
 use crate::space::Space;
 
 /// An optimizer in the middle of a run.
-#[pyclass(module = "aep._aep", unsendable)]
+#[pyclass(frozen, module = "aep._aep")]
 pub struct Optimizer {
-    algorithm: Box<dyn Algorithm>,
+    algorithm: Mutex<Box<dyn Algorithm>>,
     space: Space,
+}
+
+impl Optimizer {
+    fn algorithm(&self) -> MutexGuard<'_, Box<dyn Algorithm>> {
+        self.algorithm.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 #[pymethods]
@@ -30,26 +37,28 @@ impl Optimizer {
         let start = Start::new(&space.domain, seed).with_initial(&initial);
         let algorithm =
             (method(method_name)?.build)(population).start(&start).map_err(bad_input)?;
-        Ok(Self { algorithm, space: space.clone() })
+        Ok(Self { algorithm: Mutex::new(algorithm), space: space.clone() })
     }
 
-    fn ask<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let batch = self.algorithm.ask();
+    fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mut algorithm = self.algorithm();
+        let batch = algorithm.ask();
         let shape = [batch.len(), batch.dimension()];
         let mut rows: Vec<f64> = batch.rows().flatten().copied().collect();
         self.space.round(&mut rows);
         PyArray1::from_vec(py, rows).reshape(shape)
     }
 
-    fn tell(&mut self, costs: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+    fn tell(&self, costs: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
         let costs = costs.as_array().to_vec();
-        self.algorithm.tell(&costs).map_err(bad_input)
+        self.algorithm().tell(&costs).map_err(bad_input)
     }
 
     /// The best position and its cost; None before the first finite cost.
     #[getter]
     fn best<'py>(&self, py: Python<'py>) -> Option<(Bound<'py, PyArray1<f64>>, f64)> {
-        let best = self.algorithm.best()?;
+        let algorithm = self.algorithm();
+        let best = algorithm.best()?;
         let mut position = best.position.to_vec();
         self.space.round(&mut position);
         Some((PyArray1::from_vec(py, position), best.cost))
@@ -57,28 +66,30 @@ impl Optimizer {
 
     #[getter]
     fn generation(&self) -> u64 {
-        self.algorithm.generation()
+        self.algorithm().generation()
     }
 
     #[getter]
-    fn exhausted(&self) -> Option<&str> {
-        self.algorithm.exhausted()
+    fn exhausted(&self) -> Option<String> {
+        self.algorithm().exhausted().map(str::to_owned)
     }
 
     fn save(&self, path: PathBuf) -> PyResult<()> {
-        let state = self.algorithm.save().map_err(|error| failure::checkpoint(&error))?;
-        checkpoint::write(&path, &(self.algorithm.signature(), state))
+        let algorithm = self.algorithm();
+        let state = algorithm.save().map_err(|error| failure::checkpoint(&error))?;
+        checkpoint::write(&path, &(algorithm.signature(), state))
             .map_err(|error| failure::checkpoint(&error))
     }
 
-    fn restore(&mut self, path: PathBuf) -> PyResult<()> {
+    fn restore(&self, path: PathBuf) -> PyResult<()> {
         let (saved, state): (String, Vec<u8>) =
             checkpoint::read(&path).map_err(|error| failure::checkpoint(&error))?;
-        let run = self.algorithm.signature();
+        let mut algorithm = self.algorithm();
+        let run = algorithm.signature();
         if saved != run {
             let error = checkpoint::CheckpointError::OtherRun { checkpoint: saved, run };
             return Err(failure::checkpoint(&error));
         }
-        self.algorithm.restore(&state).map_err(|error| failure::checkpoint(&error))
+        algorithm.restore(&state).map_err(|error| failure::checkpoint(&error))
     }
 }

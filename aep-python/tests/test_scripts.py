@@ -38,3 +38,16 @@ def test_results_of_coco_are_those_that_cocopp_reads(tmp_path):
     assert "aep-practical: 2 of 2 problems" in told
     info = "".join(file.read_text() for file in (tmp_path / "exdata").rglob("*.info"))
     assert "aep-practical" in info
+
+
+def test_the_five_lines_of_the_readme_find_what_is_missing_and_draw_it(tmp_path):
+    pytest.importorskip("pandas")
+    pytest.importorskip("matplotlib")
+    root = PACKAGE.parent
+    readme = (root / "README.md").read_text()
+    lines = readme[readme.index("import aep, pandas") :].split("```")[0]
+    assert len(lines.strip().splitlines()) == 5
+    lines = lines.replace("aep-cli/examples", str(root / "aep-cli/examples"))
+    (tmp_path / "five.py").write_text("import matplotlib\nmatplotlib.use('Agg')\n" + lines)
+    assert run(tmp_path / "five.py", cwd=tmp_path).startswith("Missing: stribeck")
+    assert (tmp_path / "missing.png").stat().st_size > 10_000

@@ -1,8 +1,11 @@
 import multiprocessing
 import os
 import shutil
+import signal
 import subprocess
 import sys
+import threading
+import time
 import warnings
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
@@ -90,6 +93,19 @@ def test_a_map_that_fails_is_asked_again_a_few_times(box, alone):
     with pytest.raises(aep.WorkersLost, match="failed 3 times"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         aep.minimize(costs.valley, box, workers=gone, **BUDGET)
+
+
+def test_ctrl_c_ends_the_processes_and_keeps_what_was_found(box):
+    timer = threading.Timer(1.5, lambda: signal.raise_signal(signal.SIGINT))
+    timer.start()
+    begin = time.perf_counter()
+    with pytest.raises(aep.Interrupted) as raised:
+        aep.minimize(costs.slow_valley, box, workers=2, maxfun=10_000)
+    assert time.perf_counter() - begin < 10.0, "200 s of evaluations were left"
+    assert 0 < raised.value.result.nfev < 1000
+    for child in multiprocessing.active_children():
+        child.join(5.0)
+        assert not child.is_alive()
 
 
 def test_rows_at_once_go_to_processes_in_shares(box):

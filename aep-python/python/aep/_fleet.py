@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import functools
+import multiprocessing
 import os
+import signal
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor
 from typing import Any
 
 from ._discover import discover
+from ._result import Interrupted
+from ._workers import end
 
 
 class Fleet(list):
@@ -60,6 +64,11 @@ def discover_many(drives: Mapping[str, Any] | Iterable[Any], *, workers: Any = 1
     -------
     Fleet
         A row a drive, in their order. A drive that cannot be read or searched has a ``failure``; the others go on.
+
+    Raises
+    ------
+    aep.Interrupted
+        Ctrl-C; ``result`` holds the drives that were done.
     """
     named = list(drives.items()) if isinstance(drives, Mapping) else [(os.fspath(file), file) for file in drives]
     task = functools.partial(_one, settings=settings)
@@ -67,19 +76,31 @@ def discover_many(drives: Mapping[str, Any] | Iterable[Any], *, workers: Any = 1
         if workers < 1:
             raise ValueError(f"workers is {workers}\n  give a number of processes: 1 or more")
         if workers == 1:
-            return Fleet(map(task, named))
-        import multiprocessing
-
+            return _gathered(map(task, named))
         threads = max(1, (os.cpu_count() or 1) // workers)
         # New interpreters: the search runs on threads, which a copy of this process would not have.
         context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(threads,)) as pool:
-            return Fleet(pool.map(task, named))
+        pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_begin, initargs=(threads,))
+        try:
+            return _gathered(pool.map(task, named))
+        finally:
+            end(pool)
     mapping = workers.map if isinstance(workers, Executor) or not callable(workers) else workers
-    return Fleet(mapping(task, named))
+    return _gathered(mapping(task, named))
+
+
+def _gathered(rows: Iterable[dict[str, Any]]) -> Fleet:
+    fleet = Fleet()
+    try:
+        for row in rows:
+            fleet.append(row)
+    except KeyboardInterrupt:
+        raise Interrupted(fleet) from None
+    return fleet
 
 
 def _begin(threads: int) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ.setdefault("RAYON_NUM_THREADS", str(threads))
 
 

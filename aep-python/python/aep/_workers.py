@@ -151,6 +151,14 @@ def _said(error: BaseException) -> str:
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 
+def end(pool: ProcessPoolExecutor) -> None:
+    """Ends a pool at once: nobody waits any more for what still runs."""
+    running = list((getattr(pool, "_processes", None) or {}).values())
+    pool.shutdown(wait=False, cancel_futures=True)
+    for process in running:
+        process.terminate()
+
+
 class _Processes:
     """By processes on this machine. The cost is sent to each of them once. A pool that breaks because a process died is made
     anew; positions that end their process each time, alone too, are failures."""
@@ -173,11 +181,7 @@ class _Processes:
 
     def _end(self) -> None:
         if self.pool is not None:
-            # What still runs belongs to a generation that nobody waits for any more.
-            running = list((getattr(self.pool, "_processes", None) or {}).values())
-            self.pool.shutdown(wait=False, cancel_futures=True)
-            for process in running:
-                process.terminate()
+            end(self.pool)
             self.pool = None
 
     def __call__(self, points: np.ndarray) -> Evaluated:
