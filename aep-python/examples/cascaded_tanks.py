@@ -12,7 +12,7 @@ class Tanks(aep.Family):
     quantity = ("level", "cm")
 
     def __init__(self, pump):
-        self.pump = np.asarray(pump, dtype=float)
+        self.pump, self.asked = np.asarray(pump, dtype=float), 0
 
     def time(self):
         return STEP * np.arange(len(self.pump))
@@ -34,6 +34,7 @@ class Tanks(aep.Family):
         def of(term, name, none):
             return model.get(term, {}).get(name, none)
 
+        self.asked += 1
         gain, a, b = model["holes"].values()
         brim, leak, lag = of("overflow", "h", np.inf), of("leak", "l", 0.0), of("pump-lag", "T", 1e-9)
         flow, upper, lower, out = self.pump[0], 6.0, 6.0, []
@@ -54,4 +55,6 @@ if __name__ == "__main__":
     pump = np.repeat(random.uniform(0.5, 4.5, 60), random.integers(8, 40, 60))[:1024]
     truth = {"holes": {"g": 1.02, "a": 0.05, "b": 0.04}, "overflow": {"h": 10.0}}
     level = Tanks(pump).prediction(truth) + 0.05 * random.normal(size=1024)
-    print(aep.discover_own(Tanks(pump), level, time_limit=None))
+    tanks = Tanks(pump)
+    print(aep.discover_own(tanks, level, time_limit=None))
+    print(f"{tanks.asked} predictions")

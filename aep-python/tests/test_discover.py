@@ -49,6 +49,8 @@ def test_a_page_and_a_model_are_those_of_the_command(found, command, tmp_path):
     page = found.to_html(tmp_path / "report.html")
     assert (tmp_path / "report.html").read_text() == page
     assert page.lower().startswith("<!doctype html>") and "aep.discover(" in page
+    other = aep.discover(EXAMPLE, thresholds={"most": 0}, exclude="ripple,drift", seed=2)
+    assert "seed=2" in other._command and "exclude=['ripple', 'drift']" in other._command and "alpha" not in other._command
     assert len(page) > 100_000 and "stribeck" in page
     command("discover", EXAMPLE, "-o", tmp_path / "theirs.json", "--quiet")
     found.save_model(tmp_path / "ours.json")

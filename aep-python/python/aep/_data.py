@@ -99,7 +99,7 @@ def load(data: Any, effects: Iterable[Effect | str | os.PathLike[str]] = (), **r
         return _aep.Data.of_files([os.fspath(data)], how)
     columns = _columns(data)
     if columns is not None:
-        return _aep.Data.of_columns(type(data).__name__, columns, how)
+        return _aep.Data.of_columns("data", columns, how)
     if isinstance(data, Sequence) and data and all(isinstance(path, (str, os.PathLike)) for path in data):
         return _aep.Data.of_files([os.fspath(path) for path in data], how)
     raise TypeError(

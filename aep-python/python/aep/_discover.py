@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterable, Mapping
+from inspect import signature
 from types import SimpleNamespace
 from typing import Any
 
@@ -163,12 +164,17 @@ def discover(
     aep.Interrupted
         Ctrl-C; ``result`` holds what was found until then.
     """
+    base, effects = None if base is None else names(base), list(effects)
     given = load(data, effects, **reading)
     other = None if validate is None else load(validate, effects, **reading)
     search = _search(base, model_gain, exclude, fix, bound, seed, alpha, time_limit, thresholds, bandwidth)
     told = None if progress is None else lambda facts: progress(Result(facts))
     found, raised = _aep.discover(given, search, other, int(surrogates), told)
-    result = Found(found, _command("discover", given, base=base, **reading))
+    asked = dict(
+        base=base, model_gain=model_gain, exclude=search.exclude, effects=effects, fix=fix, bound=bound, validate=validate,
+        surrogates=surrogates, seed=seed, alpha=alpha, time_limit=time_limit, thresholds=thresholds, bandwidth=bandwidth,
+    )
+    result = Found(found, command("discover", discover, data, **asked, **reading))
     if raised is not None:
         _raise(raised, result)
     return result
@@ -208,9 +214,11 @@ def names(given: Iterable[str] | str) -> list[str]:
     return [part.strip() for part in parts if part.strip()]
 
 
-def _command(function: str, data: _aep.Data, **given: Any) -> str:
-    """How a page is made again."""
-    said = [f"{key}={value!r}" for key, value in given.items() if value is not None]
-    return f"aep.{function}({', '.join([repr(data.name), *said])})"
+def command(name: str, function: Any, *data: Any, **given: Any) -> str:
+    """How a page is made again: what differs from the defaults of a function. What is no file is called ``data``."""
+    defaults = {key: parameter.default for key, parameter in signature(function).parameters.items()}
+    files = [repr(os.fspath(each)) if isinstance(each, (str, os.PathLike)) else "data" for each in data]
+    said = [f"{key}={value!r}" for key, value in given.items() if value not in (None, [], ()) and value != defaults.get(key)]
+    return f"aep.{name}({', '.join([*files, *said])})"
 
 

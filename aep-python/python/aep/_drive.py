@@ -9,7 +9,7 @@ from typing import Any
 
 from . import _aep
 from ._data import load
-from ._discover import Found, _command, _search, names
+from ._discover import Found, _search, command, names
 from ._files import write
 from ._minimize import _raise
 from ._result import Result
@@ -36,10 +36,12 @@ def compare(data: Any, model: Any, *others: Any, bandwidth: float | None = None,
     the first one everything is told (``error``, ``where``, ``regimes``, ``views``, ``series``, ``to_html()``); ``models`` has
     the views of all, side by side. Raises ``ValueError`` for models of another kind of drive.
     """
+    effects = list(effects)
     given = load(data, effects, **reading)
     models = [(_name(each, number), _model(each)) for number, each in enumerate((model, *others), 1)]
     found, views, raised = _aep.compare(given, models, _search(seed=seed, bandwidth=bandwidth))
-    result = Found(found, _command("compare", given, **reading))
+    asked = dict(bandwidth=bandwidth, seed=seed, effects=effects)
+    result = Found(found, command("compare", compare, data, model, *others, **asked, **reading))
     result.facts["models"] = [{"model": name, "views": of} for (name, _), of in zip(models, json.loads(views))]
     if raised is not None:
         _raise(raised, result)
@@ -67,11 +69,16 @@ def suggest(
     The model's effects are refitted and every other one is tried beside them: ``ranking[0]`` has them with what each gains,
     ``most_likely`` the name. Parameters as for :func:`aep.discover` and :func:`aep.compare`.
     """
+    effects = list(effects)
     given = load(data, effects, **reading)
     search = _search(None, None, exclude, fix, bound, seed, alpha, time_limit, thresholds, bandwidth)
     told = None if progress is None else lambda facts: progress(Result(facts))
     found, raised = _aep.suggest(given, _model(model), search, told)
-    result = Found(found, _command("suggest", given, **reading))
+    asked = dict(
+        exclude=search.exclude, effects=effects, fix=fix, bound=bound, seed=seed, alpha=alpha, time_limit=time_limit,
+        thresholds=thresholds, bandwidth=bandwidth,
+    )
+    result = Found(found, command("suggest", suggest, data, model, **asked, **reading))
     if raised is not None:
         _raise(raised, result)
     return result
@@ -90,10 +97,12 @@ def extend(
     **reading: Any,
 ) -> Found:
     """Add an effect to a model and refit it: ``ladder`` has before and after, ``model()`` the extended one."""
+    effects = list(effects)
     given = load(data, effects, **reading)
     search = _search(fix=fix, bound=bound, seed=seed, bandwidth=bandwidth)
     found, raised = _aep.extend(given, _model(model), add, search)
-    result = Found(found, _command("extend", given, add=add, **reading))
+    asked = dict(add=add, effects=effects, fix=fix, bound=bound, seed=seed, bandwidth=bandwidth)
+    result = Found(found, command("extend", extend, data, model, **asked, **reading))
     if raised is not None:
         _raise(raised, result)
     return result
