@@ -56,5 +56,4 @@ if __name__ == "__main__":
     truth = {"holes": {"g": 1.02, "a": 0.05, "b": 0.04}, "overflow": {"h": 10.0}}
     level = Tanks(pump).prediction(truth) + 0.05 * random.normal(size=1024)
     tanks = Tanks(pump)
-    print(aep.discover_own(tanks, level, time_limit=None))
-    print(f"{tanks.asked} predictions")
+    print(aep.discover_own(tanks, level, time_limit=None), f"{tanks.asked} predictions", sep="\n")
