@@ -2,12 +2,12 @@
 
 use aep_data::Loaded;
 use aep_studio::Source;
-use aep_studio::report::Explained;
-use friction_ident::family::mistaken_for;
+use aep_studio::json::Beside;
+use friction_ident::family::explained;
 use missing_physics::measurement::check::DataCheck;
 use missing_physics::report::{Combinations, Samples};
 use missing_physics::{Discovery, Thresholds};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::args::{OutputArgs, library, quoted};
 use crate::failure::Failure;
@@ -64,7 +64,7 @@ impl Report<'_> {
             thresholds: self.thresholds,
             together,
             samples,
-            effects: explained(),
+            effects: explained(&library()),
             ..source(self.loaded)
         };
         match self.kind {
@@ -79,41 +79,21 @@ impl Report<'_> {
             |error: serde_json::Error| Failure::failed(format!("cannot write JSON: {error}"));
         let mut json = match self.kind {
             Kind::Discovery => aep_studio::json::json(self.discovery).map_err(broken)?,
-            Kind::Comparison => comparison(self.discovery).map_err(broken)?,
+            Kind::Comparison => aep_studio::json::comparison(self.discovery).map_err(broken)?,
         };
         for (key, value) in &self.more {
             json[*key] = value.clone();
         }
-        if !self.together.quantities.is_empty() {
-            json["friction"] = serde_json::to_value(&self.together).map_err(broken)?;
-        }
-        json["recording"] = json!(self.loaded.recording.name());
-        json["data"] = aep_studio::json::data(self.check).map_err(broken)?;
-        let left_out = &self.loaded.left_out;
-        json["data"]["rows_left_out"] =
-            json!({ "without_number": left_out.missing, "time_repeated": left_out.repeated });
+        let beside = Beside {
+            recording: self.loaded.recording.name(),
+            check: self.check,
+            without_number: self.loaded.left_out.missing,
+            time_repeated: self.loaded.left_out.repeated,
+            together: &self.together,
+        };
+        beside.add_to(&mut json).map_err(broken)?;
         Ok(json)
     }
-}
-
-/// The last rung with where it fails.
-fn comparison(discovery: &Discovery) -> serde_json::Result<Value> {
-    let last = discovery.ladder.last();
-    let diagnosis = discovery.diagnosis.as_ref().map(aep_studio::json::diagnosis).transpose()?;
-    Ok(json!({
-        "effects": last.map(|rung| &rung.effects),
-        "parameters": last.map(|rung| &rung.parameters),
-        "error": last.map(|rung| &rung.error),
-        "where": discovery.where_it_fails,
-        "regimes": discovery.regimes,
-        "noise_floor": discovery.noise_floor,
-        "metrics": last.and_then(|rung| rung.metrics),
-        "views": discovery.views,
-        "diagnosis": diagnosis,
-        "notes": aep_studio::words::notes(discovery),
-        "ladder": discovery.ladder,
-        "seed": discovery.seed,
-    }))
 }
 
 /// How a recording was read, for the page.
@@ -129,29 +109,6 @@ pub fn source(loaded: &Loaded) -> Source {
         samples: Samples::default(),
         effects: Vec::new(),
     }
-}
-
-/// What is known of every effect.
-fn explained() -> Vec<Explained> {
-    let library = library();
-    let each = library.effects().iter().flat_map(|effect| {
-        let forms = effect.forms().iter().map(|form| form.about());
-        std::iter::once(effect.about()).chain(forms).collect::<Vec<_>>()
-    });
-    let explained = each.map(|about| Explained {
-        name: about.name.to_owned(),
-        title: about.title.to_owned(),
-        equation: about.equation.to_owned(),
-        shows: about.shows.to_owned(),
-        reference: about.reference.to_owned(),
-        parameters: (about.parameters.iter())
-            .map(|parameter| [parameter.name.to_owned(), parameter.meaning.to_owned()])
-            .collect(),
-        mistaken_for: (mistaken_for(library.effects(), about.name).into_iter())
-            .map(|alike| [alike.effects.join(", "), alike.experiment.to_owned()])
-            .collect(),
-    });
-    explained.collect()
 }
 
 /// How the page is made again, as a shell takes it.

@@ -98,7 +98,7 @@ pub enum StopReason {
     Time,
     /// There was no progress for long enough.
     Stagnation,
-    /// The stop flag was set.
+    /// The stop flag was set, or the problem broke an evaluation off.
     Interrupted,
     /// The algorithm itself saw no point in going on.
     Exhausted(String),

@@ -104,6 +104,10 @@ impl<T: Scalar, P: Problem<T>, G: Fn(&[T]) -> Vec<T> + Sync> Problem<T> for Cons
         self.problem.errors()
     }
 
+    fn is_broken_off(&self) -> bool {
+        self.problem.is_broken_off()
+    }
+
     fn identity(&self) -> String {
         self.problem.identity()
     }

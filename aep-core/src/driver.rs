@@ -193,7 +193,9 @@ impl<'a, T: Scalar> Driver<'a, T> {
             if run.out_of_evaluations(algorithm, &self.budget) {
                 break StopReason::Evaluations;
             }
-            run.step(algorithm, problem, &*self.evaluator)?;
+            if !run.step(algorithm, problem, &*self.evaluator)? {
+                break StopReason::Interrupted;
+            }
             run.count_errors(problem, errors_before, &before);
             run.note_progress(algorithm, self.budget.stagnation.map_or(0.0, |s| s.tolerance));
             self.observe(algorithm, &run);

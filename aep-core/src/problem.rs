@@ -54,6 +54,12 @@ pub trait Problem<T: Scalar = f64>: Sync {
         Errors::default()
     }
 
+    /// Whether the last evaluation was broken off, for problems that can be (Ctrl-C in the middle of a generation, no worker
+    /// left): its costs are then not told, and the run ends as interrupted, as it stood before that generation.
+    fn is_broken_off(&self) -> bool {
+        false
+    }
+
     /// What tells this problem from others of the same domain: its name, its data, its settings. A
     /// checkpoint of a run on another problem is refused; nothing is told apart by default.
     fn identity(&self) -> String {
@@ -156,6 +162,10 @@ impl<T: Scalar, P: Problem<T> + ?Sized> Problem<T> for &P {
 
     fn errors(&self) -> Errors {
         (**self).errors()
+    }
+
+    fn is_broken_off(&self) -> bool {
+        (**self).is_broken_off()
     }
 
     fn identity(&self) -> String {

@@ -40,19 +40,24 @@ impl<T: Scalar> Run<T> {
         self.begun() && self.ledger.evaluations + algorithm.ask().len() as u64 > most
     }
 
+    /// A generation; whether it was told. One that was broken off leaves no trace.
     pub fn step(
         &mut self,
         algorithm: &mut dyn Algorithm<T>,
         problem: &dyn Problem<T>,
         evaluator: &dyn Evaluator<T>,
-    ) -> Result<(), TellError> {
+    ) -> Result<bool, TellError> {
         let points = algorithm.ask();
         self.costs.resize(points.len(), T::infinity());
-        self.ledger.failures.add(evaluator.evaluate(problem, points, &mut self.costs));
+        let failures = evaluator.evaluate(problem, points, &mut self.costs);
+        self.ledger.elapsed = self.earlier + self.started.elapsed();
+        if problem.is_broken_off() {
+            return Ok(false);
+        }
+        self.ledger.failures.add(failures);
         algorithm.tell(&self.costs)?;
         self.ledger.evaluations += self.costs.len() as u64;
-        self.ledger.elapsed = self.earlier + self.started.elapsed();
-        Ok(())
+        Ok(true)
     }
 
     /// Errors reach the evaluator as NaN; they are counted as what they are.

@@ -94,6 +94,66 @@ fn a_resumed_run_equals_the_uninterrupted_one() {
     }
 }
 
+/// The same problem, broken off in the middle of a generation.
+struct BrokenOff<P> {
+    problem: P,
+    left: std::sync::atomic::AtomicI64,
+}
+
+impl<P: Problem> Problem for BrokenOff<P> {
+    fn domain(&self) -> &Domain {
+        self.problem.domain()
+    }
+
+    fn evaluate(&self, x: &[f64]) -> f64 {
+        if self.left.fetch_sub(1, Ordering::Relaxed) > 0 {
+            self.problem.evaluate(x)
+        } else {
+            f64::NAN
+        }
+    }
+
+    fn is_broken_off(&self) -> bool {
+        self.left.load(Ordering::Relaxed) < 0
+    }
+}
+
+#[test]
+fn a_generation_that_was_broken_off_leaves_no_trace_and_is_made_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.ckpt");
+    for method in methods() {
+        let whole = Driver::new(Budget::evaluations(2_000))
+            .run(&mut *start(&*method, &rosenbrock()), &rosenbrock())
+            .unwrap();
+        let problem = BrokenOff { problem: rosenbrock(), left: 907.into() };
+        let first = Driver::new(Budget::evaluations(2_000))
+            .with_checkpoint(&path, 1_000_000)
+            .run(&mut *start(&*method, &problem), &problem)
+            .unwrap();
+        assert_eq!(first.stop, StopReason::Interrupted);
+        assert!(first.evaluations < 907 && first.failures.total() == 0, "{}", method.name());
+        let resumed = Driver::new(Budget::evaluations(2_000))
+            .resume(&mut *start(&*method, &problem), &rosenbrock(), &path)
+            .unwrap();
+        assert_eq!(without_time(resumed), without_time(whole), "{}", method.name());
+    }
+}
+
+#[test]
+fn trials_in_turn_are_those_of_trials_side_by_side() {
+    let problem = rosenbrock();
+    let plan = aep_core::trials::Plan::new(5, Budget::evaluations(500));
+    let (stop, ended) = (AtomicBool::new(false), std::cell::Cell::new(0));
+    let count = || ended.set(ended.get() + 1);
+    let mut in_turn = plan.run_in_turn(&Aep::paper(), |_| &problem, &stop, &count).unwrap();
+    let mut beside = plan.run(&Aep::paper(), |_| &problem).unwrap();
+    for trials in [&mut in_turn, &mut beside] {
+        trials.trials.iter_mut().for_each(|trial| trial.elapsed = std::time::Duration::ZERO);
+    }
+    assert_eq!((in_turn, ended.get()), (beside, 5));
+}
+
 #[test]
 fn a_run_resumed_after_a_restart_equals_the_uninterrupted_one() {
     let domain = Domain::cube(3, -5.12, 5.12).unwrap();

@@ -133,6 +133,34 @@ pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, D
     assemble::assemble(path, &*table(path, bytes, mapping)?, mapping)
 }
 
+/// The recording in named columns that are in memory already, called `name`: a row for every sample, and in a column no number
+/// (NaN) where there is none.
+///
+/// ```
+/// use aep_data::{Mapping, of_columns};
+///
+/// let samples = |f: fn(f64) -> f64| (0..200).map(|k| f(f64::from(k))).collect::<Vec<f64>>();
+/// let columns = vec![
+///     ("t_ms".to_owned(), samples(|k| k)),
+///     ("force_N".to_owned(), samples(|k| (0.1 * k).sin())),
+///     ("position_mm".to_owned(), samples(|k| (0.1 * k).cos())),
+/// ];
+/// let loaded = of_columns("table", columns, &Mapping::default())?;
+/// assert_eq!(loaded.recording.require("position").unwrap()[0], 1e-3);
+/// # Ok::<(), aep_data::DataError>(())
+/// ```
+///
+/// # Errors
+/// Like [`load`].
+pub fn of_columns(
+    name: &str,
+    columns: Vec<(String, Vec<f64>)>,
+    mapping: &Mapping,
+) -> Result<Loaded, DataError> {
+    let name = Path::new(name);
+    assemble::assemble(name, &memory_table::MemoryTable::new(name, columns)?, mapping)
+}
+
 /// The columns in `bytes`, the content of a file called `path`.
 fn table(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Box<dyn Table>, DataError> {
     let named_mat = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mat"));

@@ -2,7 +2,7 @@
 
 use missing_physics::Discovery;
 use missing_physics::measurement::check::DataCheck;
-use missing_physics::report::Diagnosis;
+use missing_physics::report::{Combinations, Diagnosis};
 use serde_json::{Value, json};
 
 use crate::words;
@@ -47,6 +47,61 @@ pub fn data(check: &DataCheck) -> serde_json::Result<Value> {
         json["findings"][k]["text"] = json!(words::finding(finding));
     }
     Ok(json)
+}
+
+/// The last rung of a comparison with where it fails: no verdict.
+///
+/// # Errors
+/// As [`json()`].
+pub fn comparison(discovery: &Discovery) -> serde_json::Result<Value> {
+    let last = discovery.ladder.last();
+    let diagnosis = discovery.diagnosis.as_ref().map(diagnosis).transpose()?;
+    Ok(json!({
+        "effects": last.map(|rung| &rung.effects),
+        "parameters": last.map(|rung| &rung.parameters),
+        "error": last.map(|rung| &rung.error),
+        "where": discovery.where_it_fails,
+        "regimes": discovery.regimes,
+        "noise_floor": discovery.noise_floor,
+        "metrics": last.and_then(|rung| rung.metrics),
+        "views": discovery.views,
+        "diagnosis": diagnosis,
+        "notes": words::notes(discovery),
+        "ladder": discovery.ladder,
+        "seed": discovery.seed,
+    }))
+}
+
+/// What stands in the JSON beside what was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Beside<'a> {
+    /// Name of the recording.
+    pub recording: &'a str,
+    /// What was seen in the data.
+    pub check: &'a DataCheck,
+    /// Rows left out because they have no number.
+    pub without_number: usize,
+    /// Rows left out because they have the time of the row before.
+    pub time_repeated: usize,
+    /// What parameters of the last model make together.
+    pub together: &'a Combinations,
+}
+
+impl Beside<'_> {
+    /// Adds it to the JSON of a discovery or a comparison.
+    ///
+    /// # Errors
+    /// As [`json()`].
+    pub fn add_to(&self, json: &mut Value) -> serde_json::Result<()> {
+        if !self.together.quantities.is_empty() {
+            json["friction"] = serde_json::to_value(self.together)?;
+        }
+        json["recording"] = json!(self.recording);
+        json["data"] = data(self.check)?;
+        json["data"]["rows_left_out"] =
+            json!({ "without_number": self.without_number, "time_repeated": self.time_repeated });
+        Ok(())
+    }
 }
 
 /// What the residual of a model says, with the names of its lines.

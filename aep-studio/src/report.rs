@@ -26,7 +26,7 @@ mod views;
 mod where_it_fails;
 
 pub use axes::{AxisPage, axes};
-pub use effects::Explained;
+pub use missing_physics::report::Explained;
 
 /// Where the recording came from and what was asked of it.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -7,9 +7,10 @@ use aep_data::{
     Axes, Loaded, LoadedAxes, Mapping, Part, Source, hold_name, parse_hold, part, read, read_all,
     read_axes,
 };
+use friction_ident::Library;
 use missing_physics::Hold;
 
-use super::effects::{EffectNames, add_regressors, base_of, files_words, library};
+use super::effects::{EffectNames, add_regressors, files_words, library};
 use super::shell::{flag, quoted};
 use crate::failure::Failure;
 
@@ -184,7 +185,8 @@ impl MappingArgs {
         named: Option<&EffectNames>,
         loaded: &Loaded,
     ) -> Result<Vec<String>, Failure> {
-        let names = named.cloned().unwrap_or_else(|| base_of(&loaded.recording));
+        let names =
+            named.cloned().unwrap_or_else(|| EffectNames(Library::usual(&loaded.recording)));
         let mut base = names.checked()?;
         if self.model_gain == Some(ModelGain::Fit) {
             if loaded.recording.channel("model_force").is_none() {

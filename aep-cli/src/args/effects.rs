@@ -4,9 +4,7 @@ use std::path::PathBuf;
 use std::sync::{PoisonError, RwLock};
 
 use friction_ident::Library;
-use friction_ident::effects::beside::MODEL_FORCE;
-use friction_ident::effects::regressor::{REFERENCE, regressor, regressors};
-use friction_ident::effects::{ALL, formula};
+use friction_ident::effects::formula;
 use missing_physics::Recording;
 
 use super::shell::flag;
@@ -52,20 +50,8 @@ pub fn add_files(files: &[PathBuf]) -> Result<(), Failure> {
 
 /// Lets the regressors of a recording join the library.
 pub fn add_regressors(recording: &Recording) -> Result<(), Failure> {
-    let mut library = library();
-    for name in regressors(recording) {
-        let known = library.find(name).ok().map(|effect| effect.about().reference);
-        if known != Some(REFERENCE) {
-            if known == Some(formula::REFERENCE) {
-                let what = format!("'{name}' is both a regressor and an effect of your own");
-                return Err(Failure::bad_input(what).with_hint("call one of them by another name"));
-            }
-            let effect =
-                regressor(name).map_err(|error| Failure::from_lines(&error.to_string()))?;
-            library = library.with(effect);
-        }
-    }
-    set_library(library);
+    let library = library().with_regressors(recording);
+    set_library(library.map_err(|error| Failure::from_lines(&error.to_string()))?);
     Ok(())
 }
 
@@ -80,13 +66,6 @@ impl std::str::FromStr for EffectNames {
         let names = text.split([',', '+']).map(str::trim).filter(|name| !name.is_empty());
         Ok(Self(names.map(str::to_lowercase).collect()))
     }
-}
-
-/// Effects of a base model that nobody named: none beside a force that the user's own model gives.
-pub fn base_of(recording: &Recording) -> EffectNames {
-    let own = recording.channel(MODEL_FORCE).is_some();
-    let usual = ALL.iter().filter(|effect| effect.is_usual() && !own);
-    EffectNames(usual.map(|effect| effect.about().name.to_owned()).collect())
 }
 
 impl EffectNames {

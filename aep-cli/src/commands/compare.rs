@@ -110,7 +110,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             (if again { format!("{name}_{}", k + 1) } else { name }, fit.model.clone())
         };
         let models: Vec<(String, Fitted)> = fits.iter().enumerate().map(named).collect();
-        files += &series::save(path, (&loaded.recording, &family), &models, Decides::Force)?;
+        files += &series::save(path, &family, &models, Decides::Force)?;
     }
     if global.quiet || args.results.own_stdout() {
         return watch.end();

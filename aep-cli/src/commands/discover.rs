@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use aep_data::Axes;
 use aep_studio::words;
 use friction_ident::family::{Decides, FrictionFamily};
-use missing_physics::{Discovery, Fitted, Recording, Thresholds, discover, model_of};
+use missing_physics::{Discovery, Fitted, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
 use missing_physics::report::{Combinations, Confirmed, Verdict};
 
@@ -184,7 +184,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let mut points = String::new();
     if let Some(path) = args.series.path() {
         progress.say("predicting every sample");
-        points = save_series(path, (&loaded.recording, &family), &discovery)?;
+        points = save_series(path, &family, &discovery)?;
     }
     if args.results.html.is_some() {
         progress.say("drawing the report");
@@ -239,12 +239,12 @@ fn friction(family: &FrictionFamily, discovery: &Discovery) -> Result<Combinatio
 /// Writes every rung point by point; returns what to tell the user.
 fn save_series(
     path: &Path,
-    (recording, family): (&Recording, &FrictionFamily),
+    family: &FrictionFamily,
     discovery: &Discovery,
 ) -> Result<String, Failure> {
-    let names = discovery.ladder.iter().enumerate().map(|(k, rung)| series::rung(k, &rung.added));
+    let names = discovery.ladder.iter().enumerate().map(|(k, rung)| rung.label(k));
     let rungs: Vec<(String, Fitted)> = names.zip(steps::ladder(family, discovery)?).collect();
-    series::save(path, (recording, family), &rungs, Decides::Prediction)
+    series::save(path, family, &rungs, Decides::Prediction)
 }
 
 /// The loop as it went: where the base model failed, what was tried, what was gained.

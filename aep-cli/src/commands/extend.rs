@@ -106,7 +106,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             (name.to_owned(), fit.model.clone())
         };
         let models = [("before", &before), ("after", &after)].map(named);
-        files += &series::save(path, (&loaded.recording, &family), &models, Decides::FittedForce)?;
+        files += &series::save(path, &family, &models, Decides::FittedForce)?;
     }
     if quiet {
         return watch.end();

@@ -88,7 +88,7 @@ fn in_time(
     }
     if let Some(path) = args.series.path() {
         let models = [("model".to_owned(), family.fitted(&found.found.model)?)];
-        files += &series::save(path, (recording, family), &models, Decides::Force)?;
+        files += &series::save(path, family, &models, Decides::Force)?;
     }
     if quiet {
         return watch.end();
@@ -146,7 +146,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     if let Some(path) = args.series.path() {
         let models = [("model".to_owned(), fit.model.clone())];
-        files += &series::save(path, (&loaded.recording, &family), &models, Decides::FittedForce)?;
+        files += &series::save(path, &family, &models, Decides::FittedForce)?;
     }
     if quiet {
         return watch.end();

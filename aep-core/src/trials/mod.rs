@@ -94,23 +94,50 @@ impl Plan {
         stop: &AtomicBool,
         ended: &(dyn Fn() + Sync),
     ) -> Result<Trials, RunError> {
-        let one = |trial: usize| {
-            if stop.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
-            let run = self.trial(method, &problem(trial), self.trial_seed(trial), stop)?;
-            let whole = run.stop != StopReason::Interrupted;
-            if whole {
-                ended();
-            }
-            Ok(whole.then_some(run))
-        };
+        let one = |trial| self.one_of_them(trial, method, &problem(trial), stop, ended);
         #[cfg(feature = "parallel")]
         let numbers = (0..self.trials).into_par_iter();
         #[cfg(not(feature = "parallel"))]
         let numbers = 0..self.trials;
         let trials: Result<Vec<Option<Trial>>, RunError> = numbers.map(one).collect();
         Ok(Trials { method: method.name(), trials: trials?.into_iter().flatten().collect() })
+    }
+
+    /// The same on the calling thread, one trial after the other: for problems that share something between evaluations, or
+    /// that spread each generation themselves. The results are those of [`Plan::run_watched`].
+    ///
+    /// # Errors
+    /// As [`Plan::run`].
+    pub fn run_in_turn<T: Scalar, P: Problem<T>>(
+        &self,
+        method: &dyn Method<T>,
+        problem: impl Fn(usize) -> P,
+        stop: &AtomicBool,
+        ended: &dyn Fn(),
+    ) -> Result<Trials, RunError> {
+        let one = |trial| self.one_of_them(trial, method, &problem(trial), stop, ended);
+        let trials: Result<Vec<Option<Trial>>, RunError> = (0..self.trials).map(one).collect();
+        Ok(Trials { method: method.name(), trials: trials?.into_iter().flatten().collect() })
+    }
+
+    /// A trial that was not interrupted.
+    fn one_of_them<T: Scalar>(
+        &self,
+        trial: usize,
+        method: &dyn Method<T>,
+        problem: &dyn Problem<T>,
+        stop: &AtomicBool,
+        ended: &dyn Fn(),
+    ) -> Result<Option<Trial>, RunError> {
+        if stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let run = self.trial(method, problem, self.trial_seed(trial), stop)?;
+        let whole = run.stop != StopReason::Interrupted;
+        if whole {
+            ended();
+        }
+        Ok(whole.then_some(run))
     }
 
     fn trial<T: Scalar>(

@@ -1,31 +1,12 @@
 //! The effects that the page names: what each is, its law with the data in it, and what it is mistaken for.
 
 use missing_physics::Discovery;
-use missing_physics::report::{Curve, Law, Plot, Rung};
+use missing_physics::report::{Curve, Explained, Law, Plot, Rung};
 
 use crate::html::{self, concat, escape};
 use crate::plot;
 use crate::report::Source;
 use crate::words;
-
-/// What is known of an effect, as text.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Explained {
-    /// Its name, as tables have it.
-    pub name: String,
-    /// What it is.
-    pub title: String,
-    /// What it adds to the model.
-    pub equation: String,
-    /// What it looks like in residuals.
-    pub shows: String,
-    /// What its law is from.
-    pub reference: String,
-    /// Symbol and meaning of its parameters.
-    pub parameters: Vec<[String; 2]>,
-    /// What it is mistaken for: other effects, and the experiment that tells them apart.
-    pub mistaken_for: Vec<[String; 2]>,
-}
 
 const LEAD: &str = "Those of the last model with what each contributes: the line is its law as fitted, the points are the same with \
     what the model leaves, which is what the data say of it (a component-plus-residual plot). Where the points leave the line, \

@@ -58,6 +58,11 @@ pub enum FormulaError {
         "'{0}' is the name of an effect of the library\ncall yours by another name, e.g. my-{0}"
     )]
     Taken(String),
+    /// A name that a law and a regressor of the user share.
+    #[error(
+        "'{0}' is both a regressor and an effect of your own\ncall one of them by another name"
+    )]
+    Twice(String),
     /// A name that cannot stand in a list of effects.
     #[error(
         "'{0}' is no name of an effect\nuse lower-case letters, digits, - and _, and begin with a letter"

@@ -1,7 +1,11 @@
 //! The effects that a program knows by name: those built in, and a user's own.
 
-use super::beside::BESIDE;
-use super::{ALL, Effect};
+use missing_physics::Recording;
+
+use super::beside::{BESIDE, MODEL_FORCE};
+use super::formula::FormulaError;
+use super::regressor::{self, regressor, regressors};
+use super::{ALL, Effect, formula};
 
 /// A name that no effect has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -49,6 +53,31 @@ impl Library {
         self.effects.retain(|other| other.about().name != effect.about().name);
         self.effects.push(effect);
         self
+    }
+
+    /// The same with the regressors that a recording holds.
+    ///
+    /// # Errors
+    /// A regressor that is called like another effect, or that cannot stand in a list.
+    pub fn with_regressors(mut self, recording: &Recording) -> Result<Self, FormulaError> {
+        for name in regressors(recording) {
+            let known = self.find(name).ok().map(|effect| effect.about().reference);
+            if known == Some(formula::REFERENCE) {
+                return Err(FormulaError::Twice(name.to_owned()));
+            }
+            if known != Some(regressor::REFERENCE) {
+                self = self.with(regressor(name)?);
+            }
+        }
+        Ok(self)
+    }
+
+    /// Names of the effects of a base model that nobody named: those that every axis has; none beside a force that the
+    /// user's own model gives.
+    pub fn usual(recording: &Recording) -> Vec<String> {
+        let own = recording.channel(MODEL_FORCE).is_some();
+        let usual = ALL.iter().filter(|effect| effect.is_usual() && !own);
+        usual.map(|effect| effect.about().name.to_owned()).collect()
     }
 
     /// All effects, in their default form.

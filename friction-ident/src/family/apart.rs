@@ -1,6 +1,8 @@
 //! What tells effects apart that look alike in ordinary motion.
 
-use crate::effects::{Apart, Effect};
+use missing_physics::report::Explained;
+
+use crate::effects::{Apart, Effect, Library};
 
 /// What is said where no effect knows what it looks like.
 const USUAL: &str = "record constant speeds from 0.5 mm/s to the highest in both directions over the whole stroke, and small \
@@ -31,6 +33,28 @@ pub fn mistaken_for(effects: &[&dyn Effect], name: &str) -> Vec<Alike> {
         experiment: apart.experiment,
     });
     alike.collect()
+}
+
+/// What is known of every effect of a library and its forms, for a reader.
+pub fn explained(library: &Library) -> Vec<Explained> {
+    let each = library.effects().iter().flat_map(|effect| {
+        let forms = effect.forms().iter().map(|form| form.about());
+        std::iter::once(effect.about()).chain(forms).collect::<Vec<_>>()
+    });
+    let explained = each.map(|about| Explained {
+        name: about.name.to_owned(),
+        title: about.title.to_owned(),
+        equation: about.equation.to_owned(),
+        shows: about.shows.to_owned(),
+        reference: about.reference.to_owned(),
+        parameters: (about.parameters.iter())
+            .map(|parameter| [parameter.name.to_owned(), parameter.meaning.to_owned()])
+            .collect(),
+        mistaken_for: (mistaken_for(library.effects(), about.name).into_iter())
+            .map(|alike| [alike.effects.join(", "), alike.experiment.to_owned()])
+            .collect(),
+    });
+    explained.collect()
 }
 
 /// The experiment that tells the effects called `terms` apart, by what `effects` say of themselves: the one for most of

@@ -38,9 +38,9 @@ use missing_physics::{ComparedQuantity, Coordinate, Fitted, ModelFamily, Recordi
 
 use rayon::prelude::*;
 
-pub use apart::{Alike, mistaken_for};
+pub use apart::{Alike, explained, mistaken_for};
 pub use hold::HoldChoice;
-pub use points::{Decides, ModelPoints, Points};
+pub use points::{Decides, ModelPoints, PointValues, Points};
 pub use preparation::{PreparationError, Prepared};
 
 use crate::axis::{Axis, Effort};

@@ -5,6 +5,7 @@ use missing_physics::diagnosis::fitted_blocks;
 use missing_physics::{Fitted, ModelFamily};
 
 use super::{FrictionFamily, regimes};
+use crate::axis::Axis;
 
 /// Why a sample takes no part in a comparison of forces.
 const AT_REST: &str = "at rest, where friction holds any force";
@@ -46,7 +47,69 @@ pub struct ModelPoints {
     pub force: Vec<f64>,
 }
 
+/// The values of a column of [`FrictionFamily::columns_of_points`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum PointValues {
+    /// Numbers; NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Whole numbers.
+    Whole(Vec<i64>),
+    /// Texts, nothing where there is none.
+    Texts(Vec<&'static str>),
+}
+
 impl FrictionFamily {
+    /// The recording point by point as a table, with what `models`, each with its name, predict and leave: columns with
+    /// their names, SI units in them.
+    pub fn columns_of_points(
+        &self,
+        models: &[(String, Fitted)],
+        decides: Decides,
+    ) -> Vec<(String, PointValues)> {
+        let fitted: Vec<Fitted> = models.iter().map(|(_, model)| model.clone()).collect();
+        let points = self.points(&fitted, decides);
+        let channel = |name: &str| {
+            self.recording.channel(name).map_or_else(Vec::new, |channel| channel.values.clone())
+        };
+        let (position, force) = (channel("position"), channel("force"));
+        let quantity = self.quantity();
+        let force_name = format!("{}_{}", quantity.name, quantity.unit);
+        let position_name = match self.axis {
+            Axis::Linear => "position_m",
+            Axis::Rotary => "angle_rad",
+        };
+        let left = |measured: &[f64], predicted: &[f64]| {
+            PointValues::Numbers(measured.iter().zip(predicted).map(|(m, p)| m - p).collect())
+        };
+        let took_part = points.left_out.iter().map(|why| i64::from(why.is_none())).collect();
+        let why_not = points.left_out.iter().map(|why| why.unwrap_or("")).collect();
+        let mut of_models = Vec::new();
+        for ((name, _), model) in models.iter().zip(points.models) {
+            if !model.position.is_empty() {
+                let residual = left(&position, &model.position);
+                of_models.push((
+                    format!("{name}.{position_name}"),
+                    PointValues::Numbers(model.position),
+                ));
+                of_models.push((format!("{name}.residual_{position_name}"), residual));
+            }
+            let residual = left(&points.compared_force, &model.force);
+            of_models.push((format!("{name}.{force_name}"), PointValues::Numbers(model.force)));
+            of_models.push((format!("{name}.residual_{force_name}"), residual));
+        }
+        let measured = [
+            ("time_s".to_owned(), PointValues::Numbers(self.recording.time().to_vec())),
+            ("piece".to_owned(), PointValues::Whole(points.piece)),
+            ("regime".to_owned(), PointValues::Texts(points.regime)),
+            ("took_part".to_owned(), PointValues::Whole(took_part)),
+            ("why_not".to_owned(), PointValues::Texts(why_not)),
+            (position_name.to_owned(), PointValues::Numbers(position)),
+            (force_name.clone(), PointValues::Numbers(force)),
+            (format!("compared_{force_name}"), PointValues::Numbers(points.compared_force)),
+        ];
+        measured.into_iter().chain(of_models).collect()
+    }
+
     /// The recording point by point, with what `models` predict. Where the data hardly tell what the force does between
     /// samples, it is read in the way in which the last model predicts better, as a search reads it.
     pub fn points(&self, models: &[Fitted], decides: Decides) -> Points {

@@ -15,6 +15,9 @@ pub enum SimulationError {
         /// The effect with a force that is not finite, or else the one with the largest force.
         effect: String,
     },
+    /// A recording that cannot drive a simulation.
+    #[error(transparent)]
+    Recording(#[from] missing_physics::RecordingError),
     /// Times and forces do not fit together.
     #[error("{samples} times, but {values} values of the input")]
     Length {

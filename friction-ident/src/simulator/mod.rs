@@ -17,6 +17,7 @@
 
 mod correct;
 mod error;
+mod free_run;
 mod hooks;
 mod kernels;
 mod plants;
@@ -25,6 +26,7 @@ mod scratch;
 mod step;
 
 pub use error::SimulationError;
+pub use free_run::{deviation, free_run};
 pub use plants::{Plants, Start};
 pub use run::{DEFAULT_MAX_STEP, Input, Trajectory, simulate};
 

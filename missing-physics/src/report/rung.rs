@@ -103,3 +103,10 @@ pub struct Rung {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub budget: Option<f64>,
 }
+
+impl Rung {
+    /// Its name in tables point by point, from its number in the ladder: `base`, `1_stribeck`, `2_ripple`.
+    pub fn label(&self, number: usize) -> String {
+        if number == 0 { "base".to_owned() } else { format!("{number}_{}", self.added.join("+")) }
+    }
+}

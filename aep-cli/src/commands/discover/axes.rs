@@ -218,7 +218,7 @@ fn search(args: &Args, axis: &Axis) -> Result<Searched, Failure> {
         files += &save_model(&family, &discovery, &axis_path(path, &axis.name))?;
     }
     if let Some(path) = args.series.of_axis(&axis.name) {
-        files += &save_series(&path, (recording, &family), &discovery)?;
+        files += &save_series(&path, &family, &discovery)?;
     }
     Ok(Searched { discovery, friction, json, files })
 }

@@ -1,0 +1,267 @@
+//! The loop by hand: a model held against data, what it may lack, one effect more, what to run next.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use aep_core::Aep;
+use aep_studio::words;
+use friction_ident::challenge::{Hide, Level, generate};
+use friction_ident::family::{Decides, FrictionFamily, explained};
+use friction_ident::simulator::free_run;
+use friction_ident::{Library, Model};
+use missing_physics::diagnosis::{self, fitted_blocks};
+use missing_physics::fit::{self, Fit};
+use missing_physics::report::View;
+use missing_physics::{Discovery, terms};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+
+use crate::failure::{bad_input, keywords};
+use crate::found::Found;
+use crate::reading::Data;
+use crate::search::{Happening, Search, Sends, family, known};
+use crate::watched::watched;
+
+/// Digits of a recorded number: far below noise and counts.
+const DIGITS: usize = 8;
+
+fn read_model(data: &Data, text: &str) -> PyResult<Model> {
+    Model::from_json(text, &data.library).map_err(|error| bad_input(keywords(&error.to_string())))
+}
+
+/// Refuses a model that is not of the kind of data: linear or rotary, the unit of its force, a mass of its own or none.
+fn check(family: &FrictionFamily, model: &Model) -> PyResult<()> {
+    if model.axis() != family.axis() {
+        return Err(bad_input(
+            "one of model and data is of a linear axis, the other of a rotary one\n  use a model that was made from these data",
+        ));
+    }
+    if model.effort() != family.effort() {
+        return Err(bad_input(
+            "the forces of model and data are not in one unit\n  read both in one: force_unit='V', or a gain: force_gain=...",
+        ));
+    }
+    if model.timing().is_some() != family.is_beside() {
+        return Err(bad_input(
+            "one of model and data stands beside a force that another model gives, the other does not\n  \
+             give model_force=... where the model was made with it, and only there",
+        ));
+    }
+    family.check(model).map_err(|error| bad_input(keywords(&error.to_string())))
+}
+
+fn as_given(family: &FrictionFamily, model: &Model) -> PyResult<Fit> {
+    check(family, model)?;
+    Ok(fit::as_given(family, family.fitted(model).map_err(bad_input)?))
+}
+
+/// Runs `work` where Ctrl-C ends it.
+fn stoppable<R: Send>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> PyResult<R> + Send,
+) -> PyResult<(R, Option<PyErr>)> {
+    let stop = AtomicBool::new(false);
+    let (result, raised) =
+        watched(py, &stop, |_: std::sync::mpsc::Sender<()>| work(&stop), |_, ()| Ok(()))?;
+    Ok((result?, raised))
+}
+
+/// The family, what is told of the first model, every model as it is, and its views.
+type Compared = (FrictionFamily, Discovery, Vec<Fit>, Vec<Vec<View>>);
+
+/// Models, each with its name, on data, nothing fitted: everything is told of the first one, the views of each. Returns it, the
+/// views as JSON, and what ended it early.
+#[pyfunction]
+pub fn compare(
+    py: Python<'_>,
+    data: Py<Data>,
+    models: Vec<(String, String)>,
+    search: Search,
+) -> PyResult<(Found, String, Option<PyErr>)> {
+    let given = data.get();
+    let options = search.options(given, None)?;
+    let named = models.iter().map(|(_, text)| read_model(given, text));
+    let read: Vec<Model> = named.collect::<PyResult<_>>()?;
+    let work = |stop: &AtomicBool| -> PyResult<Compared> {
+        let family = family(given, &options)?;
+        let fits: Vec<Fit> =
+            read.iter().map(|model| as_given(&family, model)).collect::<Result<_, _>>()?;
+        let fit = fits.first().ok_or_else(|| bad_input("a model is needed"))?;
+        let rung = diagnosis::rung(&family, fit, &[]);
+        let over = || stop.load(Ordering::Relaxed);
+        let mut discovery =
+            diagnosis::comparison(&family, (fit, fit), vec![rung], search.seed, &over);
+        let (mut views, mut notes) = (Vec::new(), Vec::new());
+        for fit in fits.iter().take_while(|_| !over()) {
+            let all = family.side_by_side(&fit.model).map_err(bad_input)?;
+            views.push(all.views);
+            notes.extend(
+                all.notes.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>(),
+            );
+        }
+        discovery.views = views.first().cloned().unwrap_or_default();
+        let named: Vec<(String, Vec<View>)> =
+            models.iter().map(|(name, _)| name.clone()).zip(views.iter().cloned()).collect();
+        let between = diagnosis::views::disagreements(&named);
+        notes.splice(0..0, between.iter().map(words::disagreement));
+        notes.append(&mut discovery.notes);
+        discovery.notes = notes;
+        discovery.stopped |= over();
+        Ok((family, discovery, fits, views))
+    };
+    let ((family, discovery, fits, views), raised) = stoppable(py, work)?;
+    let models: Vec<_> = models
+        .into_iter()
+        .map(|(name, _)| name)
+        .zip(fits.into_iter().map(|fit| fit.model))
+        .collect();
+    let views = serde_json::to_string(&views).map_err(bad_input)?;
+    Ok((Found::comparison(data, family, discovery, models, Decides::Force), views, raised))
+}
+
+/// Which effect a model lacks, without adding it.
+#[pyfunction]
+pub fn suggest(
+    py: Python<'_>,
+    data: Py<Data>,
+    model: String,
+    mut search: Search,
+    callback: Option<Py<PyAny>>,
+) -> PyResult<(Found, Option<PyErr>)> {
+    let stop = AtomicBool::new(false);
+    let given = data.get();
+    let model = read_model(given, &model)?;
+    search.base = Some(model.effects().iter().map(|name| (*name).to_owned()).collect());
+    let settings = search.settings(given, &stop)?;
+    let options = search.options(given, Some(model.known()))?;
+    let work = |events| -> PyResult<(FrictionFamily, Discovery)> {
+        let family = family(given, &options)?;
+        check(&family, &model)?;
+        let found = missing_physics::suggest(&family, &settings, &mut Sends(events));
+        Ok((family, found.map_err(bad_input)?))
+    };
+    let hear = |py: Python<'_>, happening: Happening| match &callback {
+        Some(callback) => callback.call1(py, (happening.told(py)?,)).map(drop),
+        None => Ok(()),
+    };
+    let (found, raised) = watched(py, &stop, work, hear)?;
+    let (family, discovery) = found?;
+    Ok((Found::discovery(data, family, discovery, settings.thresholds)?, raised))
+}
+
+/// A model with one effect more, refitted: before and after.
+#[pyfunction]
+pub fn extend(
+    py: Python<'_>,
+    data: Py<Data>,
+    model: String,
+    add: String,
+    search: Search,
+) -> PyResult<(Found, Option<PyErr>)> {
+    let given = data.get();
+    let model = read_model(given, &model)?;
+    let added = known(&given.library, &[add])?;
+    let mut effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
+    if effects.contains(&added[0]) {
+        return Err(bad_input(format!(
+            "the model has '{}' already\n  suggest tells which other effect would help",
+            added[0]
+        )));
+    }
+    effects.extend(added.iter().cloned());
+    let options = search.options(given, Some(model.known()))?;
+    let work = |stop: &AtomicBool| -> PyResult<(FrictionFamily, Discovery, [Fit; 2])> {
+        let family = family(given, &options)?;
+        let before = as_given(&family, &model)?;
+        let terms = terms(&family, &effects).map_err(bad_input)?;
+        let blocks = fitted_blocks(&family);
+        let after = fit::identify_by(&family, &terms, &blocks, search.seed, &Aep::practical()).fit;
+        let rungs =
+            vec![diagnosis::rung(&family, &before, &[]), diagnosis::rung(&family, &after, &added)];
+        let over = || stop.load(Ordering::Relaxed);
+        let discovery =
+            diagnosis::comparison(&family, (&before, &after), rungs, search.seed, &over);
+        Ok((family, discovery, [before, after]))
+    };
+    let ((family, discovery, [before, after]), raised) = stoppable(py, work)?;
+    let models = vec![("before".to_owned(), before.model), ("after".to_owned(), after.model)];
+    Ok((Found::comparison(data, family, discovery, models, Decides::FittedForce), raised))
+}
+
+/// The motion that tells rivals apart, each of them on top of the effects `below`: what is known of it as JSON, and time and
+/// position.
+#[pyfunction]
+#[expect(clippy::type_complexity, reason = "four things that Python takes apart at once")]
+pub fn experiment(
+    py: Python<'_>,
+    data: Py<Data>,
+    below: Vec<String>,
+    rivals: Vec<String>,
+    search: Search,
+) -> PyResult<(String, Bound<'_, PyArray1<f64>>, Bound<'_, PyArray1<f64>>, Option<PyErr>)> {
+    let given = data.get();
+    let options = search.options(given, None)?;
+    let (below, rivals) = (known(&given.library, &below)?, known(&given.library, &rivals)?);
+    let work = |_: &AtomicBool| {
+        let family = family(given, &options)?;
+        if family.is_beside() {
+            return Err(bad_input(
+                "beside model_force there is no mass of ours: its motion cannot be simulated\n  leave model_force out",
+            ));
+        }
+        family.experiment_between(&below, &rivals, search.seed).map_err(bad_input)
+    };
+    let (found, raised) = stoppable(py, work)?;
+    let motion = found.recording().map_err(bad_input)?;
+    let position = motion.require("position").map_err(bad_input)?.to_vec();
+    let mut json = serde_json::to_value(&found).map_err(bad_input)?;
+    json["is_worth_running"] = found.is_worth_running().into();
+    let time = motion.time().to_vec();
+    Ok((json.to_string(), PyArray1::from_vec(py, time), PyArray1::from_vec(py, position), raised))
+}
+
+/// The motion of a model under the recorded force, as columns.
+#[pyfunction]
+pub fn simulate(
+    py: Python<'_>,
+    data: Py<Data>,
+    model: String,
+) -> PyResult<Vec<(String, Bound<'_, PyArray1<f64>>)>> {
+    let given = data.get();
+    let model = read_model(given, &model)?;
+    if model.timing().is_some()
+        || model.terms().iter().any(|term| !term.effect().columns().is_empty())
+    {
+        return Err(bad_input(
+            "the model has no mass of its own, or reads columns of a recording: it cannot be simulated\n  \
+             use a model of discover without model_force and without such effects",
+        ));
+    }
+    let (motion, _) =
+        stoppable(py, |_| free_run(&model, &given.loaded.recording).map_err(bad_input))?;
+    let channels = motion.channels().iter();
+    let columns = channels.map(|channel| {
+        let name = format!("{}_{}", channel.name, channel.unit);
+        (name, PyArray1::from_slice(py, &channel.values))
+    });
+    let time = ("time_s".to_owned(), PyArray1::from_slice(py, motion.time()));
+    Ok(std::iter::once(time).chain(columns).collect())
+}
+
+/// A simulated drive with an effect hidden in it: the recording as CSV, how it is read as TOML, the truth as JSON.
+#[pyfunction]
+pub fn challenge(hide: &str, size: &str, seed: u64) -> PyResult<(String, String, String)> {
+    let level: Level = serde_json::from_value(size.into()).map_err(|_| {
+        bad_input(format!("size is '{size}'\n  it is 'faint', 'moderate' or 'clear'"))
+    })?;
+    let made = generate(&Hide::parse(&hide.to_lowercase()), seed, level).map_err(bad_input)?;
+    let truth = serde_json::to_string_pretty(&made.truth).map_err(bad_input)?;
+    let recording = &made.recording;
+    Ok((aep_data::to_csv_rounded(recording, DIGITS), aep_data::to_toml(recording), truth))
+}
+
+/// Every effect of the library and its forms: name, what it is, equation.
+#[pyfunction]
+pub fn effects() -> Vec<(String, String, String)> {
+    let all = explained(&Library::builtin()).into_iter();
+    all.map(|effect| (effect.name, effect.title, effect.equation)).collect()
+}
