@@ -1,5 +1,6 @@
 //! From the arguments to the exit code.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -70,6 +71,13 @@ pub fn main() -> ExitCode {
             ExitCode::from(failure.code)
         }
     }
+}
+
+/// Runs a command by the words that would be typed after `aep`.
+pub fn as_typed(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let cli = Cli::try_parse_from(std::iter::once(OsString::from("aep")).chain(words))
+        .map_err(|error| Failure::failed(error.to_string()))?;
+    cli.command.run(cli.global)
 }
 
 fn run(cli: Cli) -> Result<(), Failure> {

@@ -50,6 +50,7 @@ commands! {
     Optimize(optimize),
     Problems(problems),
     Reproduce(reproduce),
+    Studio(studio),
     Completions(completions),
     Man(man),
 }

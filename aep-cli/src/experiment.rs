@@ -34,11 +34,8 @@ pub fn propose(
             "\nNo experiment is written: there are no rival effects to tell apart.\n".to_owned();
         return Ok(Proposal { text, more: vec![("experiment", Value::Null)] });
     }
-    let found = family
-        .experiment_between(below, effects, seed)
-        .map_err(|error| Failure::failed(error.to_string()))?;
-    let motion = found.recording().map_err(|error| Failure::failed(error.to_string()))?;
-    save(path, &aep_data::to_csv_rounded(&motion, 9))?;
+    let found = find(family, below, effects, seed)?;
+    write(&found, path)?;
     let mut json = serde_json::to_value(&found)
         .map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;
     json["file"] = path.to_string_lossy().into();
@@ -46,9 +43,30 @@ pub fn propose(
     Ok(Proposal { text, more: vec![("experiment", json)] })
 }
 
+/// The motion that separates `effects`, each on top of the effects `below`.
+pub fn find(
+    family: &FrictionFamily,
+    below: &[String],
+    effects: &[String],
+    seed: u64,
+) -> Result<Experiment, Failure> {
+    let found = family.experiment_between(below, effects, seed);
+    found.map_err(|error| Failure::failed(error.to_string()))
+}
+
+/// Writes a motion as time and position.
+pub fn write(found: &Experiment, path: &Path) -> Result<(), Failure> {
+    let motion = found.recording().map_err(|error| Failure::failed(error.to_string()))?;
+    save(path, &aep_data::to_csv_rounded(&motion, 9))
+}
+
 fn text(found: &Experiment) -> String {
-    let mut text =
-        heading(&format!("An experiment to tell {} apart", found.effects.join(" from ")));
+    heading(&format!("An experiment to tell {} apart", found.effects.join(" from "))) + &said(found)
+}
+
+/// What is told of a motion.
+pub fn said(found: &Experiment) -> String {
+    let mut text = String::new();
     let told = |separation: &Separation| {
         format!(
             "by {} where they differ most ({:.1} times the noise), {:.1} standard deviations in all",

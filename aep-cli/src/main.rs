@@ -14,6 +14,7 @@ mod report;
 mod series;
 mod steps;
 mod stop;
+mod studio;
 
 fn main() -> std::process::ExitCode {
     app::main()

@@ -70,20 +70,23 @@ impl Drop for Progress {
 
 impl Observer for Progress {
     fn event(&mut self, event: &Event<'_>) {
-        match event {
-            Event::BaseFitted { evaluations } => {
-                self.say(format!("base model fitted ({evaluations} evaluations of the search)"));
-            }
-            Event::Screening { rung, candidates } => {
-                self.say(screening(*rung, *candidates));
-            }
-            Event::Compared { rung, effects, nats } => {
-                self.say(compared(*rung, effects, *nats));
-            }
-            Event::Finishing => self.say("looking at what is left"),
-            _ => {}
+        if let Some(said) = said(event) {
+            self.say(said);
         }
     }
+}
+
+/// What is going on, in words.
+pub fn said(event: &Event<'_>) -> Option<String> {
+    Some(match event {
+        Event::BaseFitted { evaluations } => {
+            format!("base model fitted ({evaluations} evaluations of the search)")
+        }
+        Event::Screening { rung, candidates } => screening(*rung, *candidates),
+        Event::Compared { rung, effects, nats } => compared(*rung, effects, *nats),
+        Event::Finishing => "looking at what is left".to_owned(),
+        _ => return None,
+    })
 }
 
 /// `12 s of 60 s`.

@@ -14,8 +14,17 @@ const SOON_TOLD: usize = 1_000_000;
 
 /// The flag, watched from now on.
 pub fn flag() -> &'static AtomicBool {
+    watched(Some("stopping after this step; what was found is kept (Ctrl-C again ends at once)"))
+}
+
+/// The same for whoever ends at once and says so.
+pub fn flag_silent() -> &'static AtomicBool {
+    watched(None)
+}
+
+fn watched(said: Option<&'static str>) -> &'static AtomicBool {
     // A second call fails because the first one has done it already.
-    let _ = ctrlc::set_handler(|| {
+    let _ = ctrlc::set_handler(move || {
         if AT_ONCE.load(Ordering::Relaxed) {
             eprintln!("\ninterrupted");
             std::process::exit(i32::from(INTERRUPTED));
@@ -23,7 +32,9 @@ pub fn flag() -> &'static AtomicBool {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
-        eprintln!("\nstopping after this step; what was found is kept (Ctrl-C again ends at once)");
+        if let Some(said) = said {
+            eprintln!("\n{said}");
+        }
     });
     &STOP
 }

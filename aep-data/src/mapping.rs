@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde::de::{self, Deserializer, MapAccess, Visitor};
 
 use crate::error::{DataError, Problem};
-use crate::role::ColumnRole;
+use crate::role::{ALL, ColumnRole};
 
 /// Where the values of one quantity come from. `column * unit * gain` is the value in SI.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +26,13 @@ impl Source {
     /// The column called `column`, its unit to be read from the name.
     pub fn column(column: impl Into<String>) -> Self {
         Self { column: Some(column.into()), ..Self::default() }
+    }
+
+    fn table(&self) -> toml::Table {
+        let column = self.column.clone().map(|column| ("column".to_owned(), column.into()));
+        let unit = self.unit.clone().map(|unit| ("unit".to_owned(), unit.into()));
+        let gain = self.gain.map(|gain| ("gain".to_owned(), gain.into()));
+        column.into_iter().chain(unit).chain(gain).collect()
     }
 
     /// This, with what it leaves open taken from `other`.
@@ -141,6 +148,34 @@ impl Mapping {
         })
     }
 
+    /// The text that [`parse`](Self::parse) reads back; columns for laws are no part of it.
+    pub fn to_toml(&self) -> String {
+        self.table().to_string()
+    }
+
+    fn table(&self) -> toml::Table {
+        let sources = ALL.iter().filter_map(|facts| {
+            let source = self.source(facts.role).table();
+            (!source.is_empty()).then(|| (facts.name.to_owned(), source.into()))
+        });
+        let mut table: toml::Table = sources.collect();
+        let regressors = self.regressors.iter();
+        let regressors: toml::Table =
+            regressors.map(|(name, formula)| (name.clone(), formula.clone().into())).collect();
+        let axes = self.axes.iter();
+        let axes: toml::Table =
+            axes.map(|(name, axis)| (name.clone(), axis.table().into())).collect();
+        for (name, part) in [("regressors", regressors), ("axes", axes)] {
+            if !part.is_empty() {
+                table.insert(name.to_owned(), part.into());
+            }
+        }
+        table.extend(self.interval_s.map(|interval| ("interval_s".to_owned(), interval.into())));
+        table.extend(self.topic.clone().map(|topic| ("topic".to_owned(), topic.into())));
+        table.extend(self.hold.map(|hold| ("hold".to_owned(), hold_name(hold).into())));
+        table
+    }
+
     /// The mapping in `DATA.toml` beside `data`, or the one that leaves all open where there is none.
     ///
     /// # Errors
@@ -254,6 +289,21 @@ mod tests {
         assert_eq!(mapping.time, Source::column("t_ms"));
         assert_eq!(mapping.force.gain, Some(35.15));
         assert_eq!(mapping.position, Source::default());
+    }
+
+    #[test]
+    fn what_is_written_reads_back_whatever_the_names_are() {
+        let mut mapping = parse(
+            "hold = \"sampled\"\ninterval_s = 1e-3\ntopic = \"/a\"\ntime = \"t_ms\"\n[regressors]\na = \"b*c\"\n[axes.elbow]\nforce = \"i\"\n",
+        )
+        .unwrap();
+        mapping.force = Source {
+            column: Some("a \"b\"]\n[time]".into()),
+            unit: Some("N".into()),
+            gain: Some(-35.15),
+        };
+        assert_eq!(parse(&mapping.to_toml()).unwrap(), mapping);
+        assert_eq!(parse(&Mapping::default().to_toml()).unwrap(), Mapping::default());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! The scripts of `src/front` are plain and share one scope; `uplot` there is a library, as it was published.
 
 mod packed;
-mod samples;
+pub(crate) mod samples;
 
 use missing_physics::Discovery;
 use missing_physics::report::{Curve, Plot};
@@ -12,14 +12,16 @@ use serde_json::{Value, json};
 use crate::html::escape;
 use crate::plot::Band;
 use crate::report::Source;
+use crate::words;
 
 /// Styles of live plots.
 pub(crate) const STYLE: &str =
     concat!(include_str!("front/uplot/uPlot.min.css"), "\n", include_str!("front/live.css"));
 
-const LIBRARY: &str = include_str!("front/uplot/uPlot.iife.min.js");
-/// In the order in which they need each other.
-const OWN: [&str; 10] = [
+/// A library of plots, as it was published.
+pub(crate) const LIBRARY: &str = include_str!("front/uplot/uPlot.iife.min.js");
+/// Plots, in the order in which they need each other.
+pub(crate) const PLOTS: [&str; 9] = [
     include_str!("front/data.js"),
     include_str!("front/units.js"),
     include_str!("front/colours.js"),
@@ -29,14 +31,14 @@ const OWN: [&str; 10] = [
     include_str!("front/heatmap.js"),
     include_str!("front/figures.js"),
     include_str!("front/screen.js"),
-    include_str!("front/start.js"),
 ];
+const START: &str = include_str!("front/start.js");
 
 /// The scripts of a page.
 pub(crate) fn scripts() -> String {
     format!(
-        "<script>{LIBRARY}</script>\n<script>\"use strict\";(() => {{\n{}}})();</script>\n",
-        OWN.concat()
+        "<script>{LIBRARY}</script>\n<script>\"use strict\";(() => {{\n{}{START}}})();</script>\n",
+        PLOTS.concat()
     )
 }
 
@@ -46,7 +48,15 @@ pub(crate) fn data(discovery: &Discovery, source: &Source) -> String {
     if course.time.len() < 2 || course.compared.is_empty() {
         return String::new();
     }
-    let packed = samples::packed(discovery, course);
+    let places = discovery.where_base.iter().chain(&discovery.where_it_fails);
+    let mut order: Vec<&str> = Vec::new();
+    for place in places {
+        if !order.contains(&place.coordinate.as_str()) {
+            order.push(&place.coordinate);
+        }
+    }
+    let ladder: Vec<_> = discovery.ladder.iter().map(|rung| (words::rung(rung), rung)).collect();
+    let packed = samples::packed(&ladder, &order, course);
     format!("<script type=\"application/json\" class=course>{}</script>\n", inside_script(&packed))
 }
 

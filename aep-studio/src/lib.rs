@@ -2,7 +2,7 @@
 //!
 //! [`report::html`] makes one file with its styles, drawings, data and scripts inside: nothing is loaded
 //! from elsewhere, and without scripts its drawings stand still. Light or dark as the reader's system asks, and fit to
-//! print. [`words`] has the sentences that page, terminal and
+//! print. [`studio`] is the same front end as a live page, for a server. [`words`] has the sentences that page, terminal and
 //! [`json`](mod@json) share.
 
 mod front;
@@ -10,6 +10,7 @@ mod html;
 pub mod json;
 mod plot;
 pub mod report;
+pub mod studio;
 pub mod words;
 
 pub use html::escape;

@@ -12,7 +12,7 @@ use crate::html::{escape, section};
 mod axes;
 mod compared;
 mod confirmation;
-mod data;
+pub(crate) mod data;
 mod doubts;
 mod effects;
 mod ladder;
@@ -47,7 +47,7 @@ pub struct Source {
     pub effects: Vec<Explained>,
 }
 
-const STYLE: &str = include_str!("report/style.css");
+pub(crate) const STYLE: &str = include_str!("report/style.css");
 /// Nothing is loaded: what the page shows is inside it.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:";
 

@@ -85,9 +85,12 @@ fn in_unit(value: f64, unit: Option<&str>) -> String {
 /// The errors of the ladder: those relative first, then absolute ones of the same quantity, then
 /// the other views.
 pub fn errors(discovery: &Discovery) -> Vec<ErrorName> {
-    let first = discovery.ladder.first();
-    let mut names: Vec<ErrorName> =
-        first.into_iter().flat_map(|rung| rung.error.values()).map(ErrorName::of).collect();
+    discovery.ladder.first().map(errors_of).unwrap_or_default()
+}
+
+/// The errors of one model, in the same order.
+pub fn errors_of(rung: &Rung) -> Vec<ErrorName> {
+    let mut names: Vec<ErrorName> = rung.error.values().map(ErrorName::of).collect();
     let main = names.iter().find(|name| name.is_relative()).map(|name| name.quantity.clone());
     names.sort_by_key(|name| (!name.is_relative(), Some(&name.quantity) != main.as_ref()));
     names

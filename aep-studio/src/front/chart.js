@@ -82,6 +82,16 @@ function chart(host, spec) {
   return made;
 }
 
+// Charts whose place on the page is gone.
+function forgetGone() {
+  for (const made of chartsDrawn.filter((made) => !made.host.isConnected)) {
+    made.plot?.destroy();
+    if (made.group) members(made.group).delete(made);
+    redrawn.delete(made.redraw);
+    chartsDrawn.splice(chartsDrawn.indexOf(made), 1);
+  }
+}
+
 const heightOf = (spec) => spec.height ?? 240;
 
 function extentOf(spec) {

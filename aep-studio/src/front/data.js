@@ -40,8 +40,7 @@ const runsOf = (runs, length) => {
 };
 
 // The course of a recording: see `src/front/samples.rs` for what is in it.
-function courseOf(element) {
-  const raw = JSON.parse(element.textContent);
+function courseOf(raw) {
   const time = doublesOf(raw.time);
   const count = time.length;
   const course = {

@@ -46,6 +46,7 @@ function heatmap(host, spec) {
   };
   new ResizeObserver(draw).observe(host);
   redrawn.add(draw);
+  chartsDrawn.push({ host, redraw: draw });
   canvas.addEventListener("pointermove", (event) => {
     const { left, top } = canvas.getBoundingClientRect();
     const { width, height } = size();

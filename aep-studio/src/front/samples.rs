@@ -1,7 +1,6 @@
 //! The course of a recording as the data of a page: no more points than a screen can show.
 
-use missing_physics::Discovery;
-use missing_physics::report::{Compared, Samples, Track};
+use missing_physics::report::{Compared, Rung, Samples, Track};
 use serde_json::{Value, json};
 
 use super::packed::{doubles, runs, steps};
@@ -10,8 +9,9 @@ use crate::words;
 /// Most samples of a page; of more, each stretch keeps the extremes of every series that is drawn over time.
 const MOST: usize = 100_000;
 
-/// All that the first screen draws.
-pub(super) fn packed(discovery: &Discovery, course: &Samples) -> Value {
+/// All that the first screen draws: the recording with the models of a ladder, each with its name. Coordinates stand in `order`,
+/// others after them.
+pub(crate) fn packed(ladder: &[(String, &Rung)], order: &[&str], course: &Samples) -> Value {
     let kept = kept(course, MOST);
     let at = |values: &[f64]| {
         steps(
@@ -34,23 +34,8 @@ pub(super) fn packed(discovery: &Discovery, course: &Samples) -> Value {
     }).collect();
     let track = |track: &Track| json!({"name": track.name, "unit": track.unit, "against": track.against_motion, "values": at(&track.values)});
     let tracks: Vec<Value> = course.coordinates.iter().map(track).collect();
-    let models: Vec<Value> = discovery
-        .ladder
-        .iter()
-        .map(|rung| {
-            json!({
-                "name": words::rung(rung),
-                "said": said(discovery, rung),
-            })
-        })
-        .collect();
-    let places = discovery.where_base.iter().chain(&discovery.where_it_fails);
-    let mut order: Vec<&str> = Vec::new();
-    for place in places {
-        if !order.contains(&place.coordinate.as_str()) {
-            order.push(&place.coordinate);
-        }
-    }
+    let models = ladder.iter().map(|(name, rung)| json!({"name": name, "said": said(rung)}));
+    let models: Vec<Value> = models.collect();
     json!({
         "samples": course.time.len(),
         "kept": kept.len(),
@@ -67,11 +52,11 @@ pub(super) fn packed(discovery: &Discovery, course: &Samples) -> Value {
 }
 
 /// What a model errs, in words: `1.65 times what the sensors make, force error 4.31 %`.
-fn said(discovery: &Discovery, rung: &missing_physics::report::Rung) -> String {
+pub(crate) fn said(rung: &Rung) -> String {
     let ahead = rung.budget.map(|times| {
         format!("prediction error {} times what the sensors make", words::times(times))
     });
-    let name = words::main_error(discovery);
+    let name = words::errors_of(rung).into_iter().next();
     let along = name.and_then(|name| {
         let error = rung.error.get(&name.key)?;
         Some(format!("{} error {} on held-out data", name.quantity, name.value(error.validation)))

@@ -5,8 +5,8 @@ const CHOSEN = "c1";
 const MOMENTS = 5;
 const REGIME_TINTS = ["t0", "t1", "t2", "t3", "t4", "t5", "t6"];
 
-function screen(section) {
-  const course = courseOf(section.querySelector("script.course"));
+function screen(section, raw = JSON.parse(section.querySelector("script.course").textContent)) {
+  const course = courseOf(raw);
   const decides = course.compared.findIndex((compared) => compared.decides);
   const state = { course, section, model: course.models.length - 1, compared: 0, decides: Math.max(decides, 0), group: `time-${section.id || Math.random()}`, regimes: false };
   // Between pieces nothing is known: an instant without values.
@@ -52,7 +52,7 @@ function build(state) {
   choices(state, at("choices"));
   const group = state.group;
   const compared = () => course.compared[state.compared];
-  const base = { label: "base model", colour: BASE, width: 1.2 };
+  const base = { label: course.models[0].name, colour: BASE, width: 1.2 };
   const chosen = { label: course.models[state.model].name, colour: CHOSEN, width: 1.4 };
   const note = (row) => noteOf(state, row);
   const behind = (chart, pen) => background(state, chart, pen);
@@ -302,7 +302,7 @@ function profile(state, host) {
   };
   made.chart = chart(holder, {
     title: "Where it fails along", ...axes(), data: data(), height: 170, beside: [picker],
-    series: [...(several ? [{ label: "base model", colour: BASE, width: 1.2 }] : []), { label: course.models[state.model].name, colour: CHOSEN, width: 1.5 }],
+    series: [...(several ? [{ label: course.models[0].name, colour: BASE, width: 1.2 }] : []), { label: course.models[state.model].name, colour: CHOSEN, width: 1.5 }],
     behind: zeroLine,
     held: () => made.held,
   });

@@ -8,7 +8,7 @@ use crate::report::Source;
 use crate::words;
 
 /// The section of the data.
-pub(super) fn section(check: &DataCheck, source: &Source) -> String {
+pub(crate) fn section(check: &DataCheck, source: &Source) -> String {
     let lead = format!(
         "{} samples in {} over {}, one every {}.",
         check.samples,

@@ -102,15 +102,19 @@ impl Tab {
 
     /// Opens a file and waits until it has loaded.
     pub fn open(&mut self, path: &Path) {
-        let url = format!("file://{}", path.display());
-        self.ask("Page.navigate", &json!({"url": url}));
-        self.until("document.readyState === 'complete' && location.protocol === 'file:'");
+        self.visit(&format!("file://{}", path.display()));
         if self.scripted {
             // All that the first screen draws.
             self.until(
                 "[...document.querySelectorAll('section.screen')].every((s) => s.dataset.ready)",
             );
         }
+    }
+
+    /// Opens an address and waits until it has loaded.
+    pub fn visit(&mut self, url: &str) {
+        self.ask("Page.navigate", &json!({"url": url}));
+        self.until("document.readyState === 'complete' && location.protocol !== 'about:'");
     }
 
     /// The value of an expression; promises are awaited.

@@ -5,7 +5,7 @@
 //! component-plus-residual plot, in which a law that does not fit the data is seen as one.
 
 use missing_physics::report::{Law, LawBin};
-use missing_physics::{Fitted, ModelFamily, fit};
+use missing_physics::{Coordinate, Fitted, ModelFamily, fit};
 
 use super::FrictionFamily;
 use crate::axis::Quantity;
@@ -21,9 +21,9 @@ const AS_GOOD: f64 = 0.02;
 const NOTHING: f64 = 1e-6;
 
 /// A coordinate to draw along.
-struct Along {
-    name: String,
-    unit: String,
+pub(super) struct Along {
+    pub name: String,
+    pub unit: String,
     values: Vec<f64>,
     /// Signs that contributions are multiplied with.
     parity: Option<Vec<f64>>,
@@ -97,13 +97,7 @@ impl FrictionFamily {
         let each: Vec<(Along, f64)> = (self.coordinates.iter())
             .filter(|coordinate| coordinate.values.iter().all(|value| value.is_finite()))
             .map(|coordinate| {
-                let along = Along {
-                    name: coordinate.name.clone(),
-                    unit: coordinate.unit.clone(),
-                    values: coordinate.values.clone(),
-                    parity: coordinate.parity.clone(),
-                    stretches: STRETCHES,
-                };
+                let along = Along { parity: coordinate.parity.clone(), ..Along::of(coordinate) };
                 let left = along.unexplained(part);
                 (along, left)
             })
@@ -114,6 +108,12 @@ impl FrictionFamily {
 }
 
 impl Along {
+    /// A coordinate, contributions as they are.
+    pub fn of(coordinate: &Coordinate) -> Self {
+        let (name, unit) = (coordinate.name.clone(), coordinate.unit.clone());
+        Self { name, unit, values: coordinate.values.clone(), parity: None, stretches: STRETCHES }
+    }
+
     /// Points in the order of the coordinate, in stretches of about as many points each.
     fn stretches(&self) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.values.len()).collect();
@@ -137,7 +137,8 @@ impl Along {
         self.stretches().iter().map(within).sum()
     }
 
-    fn means(&self, law: &[f64], data: &[f64]) -> Vec<LawBin> {
+    /// Means of a contribution, and of what the data say of it.
+    pub fn means(&self, law: &[f64], data: &[f64]) -> Vec<LawBin> {
         let bin = |points: &Vec<usize>| LawBin {
             at: points.iter().map(|k| self.values[*k]).sum::<f64>() / points.len() as f64,
             law: self.mean(law, points),

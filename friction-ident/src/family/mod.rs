@@ -25,6 +25,7 @@ mod regimes;
 mod samples;
 mod surrogates;
 mod sweep;
+mod typed;
 mod views;
 
 use std::collections::BTreeMap;

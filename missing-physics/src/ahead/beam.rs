@@ -4,6 +4,7 @@
 //! another shape of its own before a further effect may be named. Of each size the set stands that predicts best,
 //! and of those as good the one with the fewest parameters. At the end everything that is not needed goes.
 
+mod by_hand;
 mod conclude;
 mod grow;
 mod outdone;
@@ -11,6 +12,8 @@ mod rivals;
 mod shape;
 
 use std::collections::BTreeSet;
+
+pub use by_hand::ByHand;
 
 use super::Ahead;
 use super::compare::{Comparison, Difference};

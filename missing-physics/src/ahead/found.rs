@@ -15,7 +15,7 @@ use crate::report::{Decision, Lacking, Remains, Remark};
 use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
-const IN_FULL: usize = 8;
+pub const IN_FULL: usize = 8;
 /// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
 const MOST: f64 = 0.5;
 

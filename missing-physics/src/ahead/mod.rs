@@ -27,6 +27,7 @@ pub mod statistics;
 pub(crate) mod testing;
 pub mod whitening;
 
+pub use beam::ByHand;
 pub use looks::{Reading, discover};
 pub use residuals::Residuals;
 

@@ -191,43 +191,16 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
 
     fn rung(&self, node: &Node, fit: &Fit, split: &Split, k: Option<usize>) -> Rung {
         let terms = self.family.terms();
-        let effects = fit.model.terms.iter().filter(|&&t| !terms[t].always);
         let added = k.iter().map(|k| terms[self.found.added[*k]].name.clone());
         let gain: Option<&Difference> = k.map(|k| &self.found.gains[k]);
         Rung {
             added: added.collect(),
-            effects: effects.map(|&t| terms[t].name.clone()).collect(),
-            parameters: uncertainty::estimates(
-                self.family,
-                &self.as_prediction(node),
-                &vec![1.0; node.errors.len()],
-            ),
-            error: diagnosis::errors(self.family, fit, split),
             p_value: k.and_then(|k| self.found.p_values.get(k).copied()).map(|p| {
                 // A gain that is no number is none.
                 if gain.is_some_and(|gain| gain.nats.is_nan()) { 1.0 } else { p }
             }),
-            metrics: Some(SplitMetrics::of(&fit.residual, self.family.target(), split)),
             likelihood_gain: gain.map(|gain| gain.nats).filter(|nats| nats.is_finite()),
-            budget: Some(node.scale / self.ahead.budget()).filter(|times| times.is_finite()),
-        }
-    }
-
-    /// The node as the estimator of intervals wants it.
-    fn as_prediction(&self, node: &Node) -> Fit {
-        let moved = scales::of(self.family, &node.model);
-        let jacobian = node.jacobian(self.family, self.ahead).iter().zip(&moved);
-        let parameters = node.model.parameters(self.family);
-        let columns = jacobian.zip(parameters).map(|((column, moved), (_, parameter))| {
-            let per = if parameter.scale == Scale::Log { 1.0 } else { moved.scale() };
-            column.iter().map(|value| -value / per).collect()
-        });
-        Fit {
-            model: node.model.clone(),
-            prediction: Vec::new(),
-            residual: node.errors.clone(),
-            jacobian: columns.collect(),
-            cost: 0.0,
+            ..rung((self.family, self.ahead), node, fit, split)
         }
     }
 
@@ -271,6 +244,50 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             limits.insert(term.name.clone(), detection_limit(term, values, amplitude, size));
         }
         limits
+    }
+}
+
+/// What is told of a model by itself; `fit` is the same model along the measured motion.
+pub fn rung<F: ModelFamily + ?Sized>(
+    (family, ahead): (&F, &dyn Ahead),
+    node: &Node,
+    fit: &Fit,
+    split: &Split,
+) -> Rung {
+    let terms = family.terms();
+    let effects = fit.model.terms.iter().filter(|&&t| !terms[t].always);
+    let everywhere = vec![1.0; node.errors.len()];
+    Rung {
+        added: Vec::new(),
+        effects: effects.map(|&t| terms[t].name.clone()).collect(),
+        parameters: uncertainty::estimates(
+            family,
+            &as_prediction((family, ahead), node),
+            &everywhere,
+        ),
+        error: diagnosis::errors(family, fit, split),
+        p_value: None,
+        metrics: Some(SplitMetrics::of(&fit.residual, family.target(), split)),
+        likelihood_gain: None,
+        budget: Some(node.scale / ahead.budget()).filter(|times| times.is_finite()),
+    }
+}
+
+/// The node as the estimator of intervals wants it.
+fn as_prediction<F: ModelFamily + ?Sized>((family, ahead): (&F, &dyn Ahead), node: &Node) -> Fit {
+    let moved = scales::of(family, &node.model);
+    let jacobian = node.jacobian(family, ahead).iter().zip(&moved);
+    let parameters = node.model.parameters(family);
+    let columns = jacobian.zip(parameters).map(|((column, moved), (_, parameter))| {
+        let per = if parameter.scale == Scale::Log { 1.0 } else { moved.scale() };
+        column.iter().map(|value| -value / per).collect()
+    });
+    Fit {
+        model: node.model.clone(),
+        prediction: Vec::new(),
+        residual: node.errors.clone(),
+        jacobian: columns.collect(),
+        cost: 0.0,
     }
 }
 

@@ -25,6 +25,13 @@ pub enum Event<'a> {
         /// Held-out log-likelihood gained, nats.
         nats: f64,
     },
+    /// A model that a person builds has come this far ([`crate::ahead::ByHand`]).
+    Fitted {
+        /// Its effects.
+        effects: &'a [String],
+        /// Its prediction error over what the sensors alone make.
+        times: f64,
+    },
     /// The loop has ended; the report is being made.
     Finishing,
 }
