@@ -40,7 +40,7 @@ pub fn json(discovery: &Discovery) -> serde_json::Result<Value> {
 ///
 /// # Errors
 /// As [`json()`].
-pub fn data(check: &DataCheck) -> serde_json::Result<Value> {
+fn data(check: &DataCheck) -> serde_json::Result<Value> {
     let mut json = serde_json::to_value(check)?;
     for (k, finding) in check.findings.iter().enumerate() {
         json["findings"][k]["severity"] = json!(finding.severity());
