@@ -132,8 +132,8 @@ mod tests {
              -1.70 N at 11.5 s. Why, this recording does not show."
         );
         let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
-        let wave = Course::Wave { amplitude: 10.25, period: 0.4348, unit, along_unit };
-        assert!(rival(&[], wave).contains("it swings by 10.3 N to either side every 435 ms."));
+        let wave = Course::Wave { amplitude: 10.3, period: 0.435, unit, along_unit };
+        assert!(rival(&[], wave).contains("it swings by 10.3 N to either side every 0.435 s."));
         let (unit, along_unit) = ("N".to_owned(), "m".to_owned());
         let varies = Course::Varies { range: 1.7, from: 0.1, to: 0.11, unit, along_unit };
         assert!(rival(&[], varies).contains(
