@@ -167,8 +167,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
             }
             if rival.is_none() {
-                let instead = self.rivalled(&climb, &last).or_else(|| self.outdone(&climb, &last));
-                if let Some((without, found)) = instead {
+                let rivalled = self.rivalled(&climb, &last);
+                // What is told beside all effects takes none back; a refused set may.
+                let takes_back = |found: &Remains| matches!(found, Remains::Rival { instead_of, .. } if !instead_of.is_empty());
+                let stands = rivalled.as_ref().is_some_and(|(_, found)| takes_back(found));
+                let outdone = if stands { None } else { self.outdone(&climb, &last) };
+                if let Some((without, found)) = outdone.or(rivalled) {
                     rival = Some(found);
                     best = without;
                     continue;
