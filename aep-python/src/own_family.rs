@@ -1,13 +1,12 @@
 //! A model family that a user writes in Python: any simulator is the model.
 
-use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use missing_physics::measurement::check::check;
 use missing_physics::{
-    Channel, ComparedQuantity, Coordinate, Discovery, Fitted, ModelFamily, Recording, Role, Term,
-    TermParameter, discover, model_of,
+    Channel, ComparedQuantity, Coordinate, Discovery, FnFamily, Given, ModelFamily, Recording,
+    Role, Term, TermParameter, discover, model_of,
 };
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -65,105 +64,62 @@ pub struct Subject {
     prediction: Py<PyAny>,
 }
 
-struct OwnFamily {
-    terms: Vec<Term>,
-    quantity: ComparedQuantity,
-    time: Vec<f64>,
-    measured: Vec<f64>,
-    coordinates: Vec<Coordinate>,
-    noise: Option<f64>,
-    /// Predictions are made one at a time: a simulator of the user's need not bear two.
-    prediction: Mutex<Py<PyAny>>,
-    failures: Mutex<(u64, Option<PyErr>)>,
-}
+/// Predictions that failed, and how the first one did.
+type Failures = Arc<Mutex<(u64, Option<PyErr>)>>;
 
-impl OwnFamily {
-    fn new(subject: Subject) -> Self {
-        let (name, unit) = subject.quantity;
-        let coordinates = subject.coordinates.into_iter();
-        Self {
-            terms: subject.terms.into_iter().map(OwnTerm::term).collect(),
-            quantity: ComparedQuantity { name, unit },
-            time: subject.time,
-            measured: subject.measured,
-            coordinates: coordinates
-                .map(|(name, unit, values)| Coordinate::of_state(&name, &unit, values))
-                .collect(),
-            noise: subject.noise,
-            prediction: Mutex::new(subject.prediction),
-            failures: Mutex::default(),
-        }
-    }
+type OwnFamily = FnFamily<Box<dyn Fn(&Given<'_>, &mut [f64]) + Send + Sync>>;
 
-    fn predicted(
-        &self,
-        py: Python<'_>,
-        prediction: &Py<PyAny>,
-        model: &Fitted,
-        out: &mut [f64],
-    ) -> PyResult<()> {
-        let given = PyDict::new(py);
-        let mut rest = model.values.as_slice();
-        for &index in &model.terms {
-            let term = &self.terms[index];
-            let (values, others) = rest.split_at(term.parameters.len());
-            rest = others;
-            let of_term = PyDict::new(py);
-            for (parameter, value) in term.parameters.iter().zip(values) {
-                of_term.set_item(&parameter.name, value)?;
+impl Subject {
+    fn family(self, failures: &Failures) -> OwnFamily {
+        // Predictions are made one at a time: a simulator of the user's need not bear two.
+        let prediction = Mutex::new(self.prediction);
+        let failures = Arc::clone(failures);
+        let predict = move |given: &Given<'_>, out: &mut [f64]| {
+            // First the turn, then the interpreter: the other way round whoever has the one would wait for the other.
+            let prediction = prediction.lock().unwrap_or_else(PoisonError::into_inner);
+            let failed = Python::attach(|py| predicted(py, &prediction, given, out));
+            if let Err(error) = failed {
+                out.fill(f64::NAN);
+                let mut failures = failures.lock().unwrap_or_else(PoisonError::into_inner);
+                failures.0 += 1;
+                failures.1.get_or_insert(error);
             }
-            given.set_item(&term.name, of_term)?;
+        };
+        let terms = self.terms.into_iter().map(OwnTerm::term).collect();
+        let family: OwnFamily =
+            FnFamily::new(terms, self.time, self.measured, Box::new(predict) as Box<_>)
+                .predicting(&self.quantity.0, &self.quantity.1);
+        let along = |family: OwnFamily, (name, unit, values): (String, String, Vec<f64>)| {
+            family.along(Coordinate::of_state(&name, &unit, values))
+        };
+        let family = self.coordinates.into_iter().fold(family, along);
+        match self.noise {
+            Some(sd) => family.with_noise(sd),
+            None => family,
         }
-        let answer = prediction.call1(py, (given,))?;
-        let answer: PyReadonlyArray1<'_, f64> = answer.extract(py)?;
-        for (out, value) in out.iter_mut().zip(answer.as_array()) {
-            *out = *value;
-        }
-        Ok(())
     }
 }
 
-impl ModelFamily for OwnFamily {
-    fn terms(&self) -> &[Term] {
-        &self.terms
-    }
-
-    fn quantity(&self) -> ComparedQuantity {
-        self.quantity.clone()
-    }
-
-    fn time(&self) -> &[f64] {
-        &self.time
-    }
-
-    fn target(&self) -> &[f64] {
-        &self.measured
-    }
-
-    fn predict(&self, model: &Fitted, out: &mut [f64]) {
-        // First the turn, then the interpreter: the other way round whoever has the one would wait for the other.
-        let prediction = self.prediction.lock().unwrap_or_else(PoisonError::into_inner);
-        let failed = Python::attach(|py| self.predicted(py, &prediction, model, out));
-        if let Err(error) = failed {
-            out.fill(f64::NAN);
-            let mut failures = self.failures.lock().unwrap_or_else(PoisonError::into_inner);
-            failures.0 += 1;
-            failures.1.get_or_insert(error);
+fn predicted(
+    py: Python<'_>,
+    prediction: &Py<PyAny>,
+    model: &Given<'_>,
+    out: &mut [f64],
+) -> PyResult<()> {
+    let given = PyDict::new(py);
+    for (term, values) in model.terms() {
+        let of_term = PyDict::new(py);
+        for (parameter, value) in term.parameters.iter().zip(values) {
+            of_term.set_item(&parameter.name, value)?;
         }
+        given.set_item(&term.name, of_term)?;
     }
-
-    fn coordinates(&self) -> &[Coordinate] {
-        &self.coordinates
+    let answer = prediction.call1(py, (given,))?;
+    let answer: PyReadonlyArray1<'_, f64> = answer.extract(py)?;
+    for (out, value) in out.iter_mut().zip(answer.as_array()) {
+        *out = *value;
     }
-
-    fn motion(&self) -> Vec<Vec<f64>> {
-        self.coordinates.iter().map(|coordinate| coordinate.values.clone()).collect()
-    }
-
-    fn noise(&self) -> BTreeMap<String, f64> {
-        let key = format!("{}_{}", self.quantity.name, self.quantity.unit);
-        self.noise.map(|noise| (key, noise)).into_iter().collect()
-    }
+    Ok(())
 }
 
 /// What was found of a family of the user's own.
@@ -186,22 +142,19 @@ pub fn discover_own(
     callback: Option<Py<PyAny>>,
 ) -> PyResult<(OwnFound, (u64, Option<PyErr>), Option<PyErr>)> {
     let stop = Arc::new(AtomicBool::new(false));
-    let family = OwnFamily::new(subject);
+    let failures = Failures::default();
+    let family = subject.family(&failures);
     let known = |name: &String| {
-        let found = family.terms.iter().any(|term| &term.name == name);
-        let all: Vec<&str> = family.terms.iter().map(|term| term.name.as_str()).collect();
+        let all: Vec<&str> = family.terms().iter().map(|term| term.name.as_str()).collect();
         let what =
             || bad_input(format!("there is no term '{name}'\n  there are: {}", all.join(", ")));
-        found.then_some(()).ok_or_else(what)
+        all.contains(&name.as_str()).then_some(()).ok_or_else(what)
     };
     let settings = search.settings_of_names(&known, &stop)?;
-    let channel = Channel::new(
-        family.quantity.name.clone(),
-        family.quantity.unit.clone(),
-        family.measured.clone(),
-    );
+    let ComparedQuantity { name, unit } = family.quantity();
+    let channel = Channel::new(name, unit, family.target().to_vec());
     let recording =
-        Recording::new("measured", family.time.clone(), vec![channel]).map_err(bad_input)?;
+        Recording::new("measured", family.time().to_vec(), vec![channel]).map_err(bad_input)?;
     let work = |events| discover(&family, &settings, &mut Sends(events)).map_err(bad_input);
     let hear = |py: Python<'_>, happening: Happening| match &callback {
         Some(callback) => callback.call1(py, (happening.told(py)?,)).map(drop),
@@ -210,7 +163,7 @@ pub fn discover_own(
     let (discovery, raised) = watched(py, &stop, work, hear)?;
     let discovery = discovery?;
     let failures = {
-        let mut failures = family.failures.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut failures = failures.lock().unwrap_or_else(PoisonError::into_inner);
         (failures.0, failures.1.take())
     };
     let thresholds = settings.thresholds;
@@ -236,11 +189,11 @@ impl OwnFound {
     /// Every sample: what was measured, and prediction and residual of every rung.
     fn series<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
         let array = |values: Vec<f64>| PyArray1::from_vec(py, values).into_any();
-        let ComparedQuantity { name, unit } = &self.family.quantity;
-        let measured = &self.family.measured;
+        let ComparedQuantity { name, unit } = self.family.quantity();
+        let measured = self.family.target();
         let mut columns = vec![
-            ("time_s".to_owned(), array(self.family.time.clone())),
-            (format!("compared_{name}_{unit}"), array(measured.clone())),
+            ("time_s".to_owned(), array(self.family.time().to_vec())),
+            (format!("compared_{name}_{unit}"), array(measured.to_vec())),
         ];
         for (number, rung) in self.discovery.ladder.iter().enumerate() {
             let model = model_of(&self.family, rung).map_err(bad_input)?;

@@ -36,7 +36,8 @@ mod task;
 pub use confirm::confirm;
 pub use discover::{discover, likely, suggest};
 pub use family::{
-    ComparedQuantity, Coordinate, Fitted, FnFamily, ModelFamily, Regime, Role, Term, TermParameter,
+    ComparedQuantity, Coordinate, Fitted, FnFamily, Given, ModelFamily, Regime, Role, Term,
+    TermParameter,
 };
 pub use measurement::{Channel, Hold, Recording, RecordingError};
 pub use predicted::prediction_fit;

@@ -167,12 +167,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
             }
             if rival.is_none() {
-                let rivalled = self.rivalled(&climb, &last);
-                // What is told beside all effects takes none back; a refused set may.
-                let takes_back = |found: &Remains| matches!(found, Remains::Rival { instead_of, .. } if !instead_of.is_empty());
-                let stands = rivalled.as_ref().is_some_and(|(_, found)| takes_back(found));
-                let outdone = if stands { None } else { self.outdone(&climb, &last) };
-                if let Some((without, found)) = outdone.or(rivalled) {
+                if let Some((without, found)) = self.instead(&climb, &last) {
                     rival = Some(found);
                     best = without;
                     continue;
@@ -286,7 +281,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     }
 
     fn names(&self, node: &Node) -> Vec<String> {
-        self.named(&node.effects(self.family))
+        node.names(self.family)
     }
 
     fn named(&self, terms: &[usize]) -> Vec<String> {

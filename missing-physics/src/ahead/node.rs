@@ -104,4 +104,9 @@ impl Node {
     pub fn effects<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<usize> {
         self.model.terms.iter().copied().filter(|t| !family.terms()[*t].always).collect()
     }
+
+    /// Their names.
+    pub fn names<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<String> {
+        self.effects(family).iter().map(|t| family.terms()[*t].name.clone()).collect()
+    }
 }

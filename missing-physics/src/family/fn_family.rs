@@ -1,5 +1,7 @@
 //! A family from a closure.
 
+use std::collections::BTreeMap;
+
 use super::coordinate::{ComparedQuantity, Coordinate};
 use super::fitted::Fitted;
 use super::model_family::ModelFamily;
@@ -44,6 +46,7 @@ pub struct FnFamily<P> {
     time: Vec<f64>,
     target: Vec<f64>,
     coordinates: Vec<Coordinate>,
+    noise: Option<f64>,
     predict: P,
 }
 
@@ -75,7 +78,7 @@ impl<P: Fn(&Given<'_>, &mut [f64]) + Sync> FnFamily<P> {
     /// From instants (s), what was measured at them, and what a model predicts there.
     pub fn new(terms: Vec<Term>, time: Vec<f64>, target: Vec<f64>, predict: P) -> Self {
         let quantity = ComparedQuantity { name: "output".into(), unit: "1".into() };
-        Self { terms, quantity, time, target, coordinates: Vec::new(), predict }
+        Self { terms, quantity, time, target, coordinates: Vec::new(), noise: None, predict }
     }
 
     /// Says what is predicted, and its SI unit.
@@ -90,6 +93,13 @@ impl<P: Fn(&Given<'_>, &mut [f64]) + Sync> FnFamily<P> {
     #[must_use]
     pub fn along(mut self, coordinate: Coordinate) -> Self {
         self.coordinates.push(coordinate);
+        self
+    }
+
+    /// With the standard deviation of the measurement's noise, in the unit of what is predicted.
+    #[must_use]
+    pub fn with_noise(mut self, sd: f64) -> Self {
+        self.noise = Some(sd);
         self
     }
 }
@@ -123,5 +133,10 @@ impl<P: Fn(&Given<'_>, &mut [f64]) + Sync> ModelFamily for FnFamily<P> {
     fn motion(&self) -> Vec<Vec<f64>> {
         let state = self.coordinates.iter().filter(|coordinate| coordinate.state);
         state.map(|coordinate| coordinate.values.clone()).collect()
+    }
+
+    fn noise(&self) -> BTreeMap<String, f64> {
+        let key = format!("{}_{}", self.quantity.name, self.quantity.unit);
+        self.noise.map(|noise| (key, noise)).into_iter().collect()
     }
 }

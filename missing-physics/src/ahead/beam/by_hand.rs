@@ -112,11 +112,7 @@ impl<'a, F: ModelFamily + ?Sized> ByHand<'a, F> {
     }
 
     fn told(&self, node: &Node) {
-        let effects: Vec<String> = node
-            .effects(self.family)
-            .iter()
-            .map(|t| self.family.terms()[*t].name.clone())
-            .collect();
+        let effects = node.names(self.family);
         let times = node.scale / self.whole.budget();
         (self.tell)(&Event::Fitted { effects: &effects, times });
     }

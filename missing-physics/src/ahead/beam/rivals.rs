@@ -26,18 +26,23 @@ struct Does {
 }
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The model without effects that a rival makes up for, and what it was found to be; with all of them where it does
-    /// something beside them. Nothing where no rival does.
-    pub(super) fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
+    /// The model without effects that something else makes up for, and what that is; with all of them where a rival does
+    /// something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
+    pub(super) fn instead(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
+        let rival = self.rivalled(climb, last);
+        let takes_back = rival.as_ref().is_some_and(|does| does.instead_of > 0);
+        let outdone = if takes_back { None } else { self.outdone(climb, last) };
+        outdone.or_else(|| rival.map(|does| (does.without, does.found)))
+    }
+
+    /// The rival that does most: takes effects back, then gains.
+    fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<Does> {
         let rivals = self.ahead.rivals();
         let each = rivals.iter().filter_map(|rival| self.rival(climb, last, rival));
-        // Nothing is worse than a name that is not there.
-        let order = |does: &Does| (does.instead_of > 0, does.nats);
-        let most = each.max_by(|a, b| {
-            let ((a, more), (b, nats)) = (order(a), order(b));
-            a.cmp(&b).then(more.total_cmp(&nats))
-        });
-        most.map(|does| (does.without, does.found))
+        each.max_by(|a, b| {
+            let order = (a.instead_of > 0).cmp(&(b.instead_of > 0));
+            order.then(a.nats.total_cmp(&b.nats))
+        })
     }
 
     fn rival(&mut self, climb: &Climb, last: &Node, rival: &Rival) -> Option<Does> {

@@ -11,7 +11,7 @@ fn effects_that_are_shapes_of_a_rival_stand_where_they_predict_as_well() {
     for (kin, stand) in [(vec![], false), (vec![WAVE, BEAT], true)] {
         plant.kin = kin;
         let last = node(&plant, &HIDDEN);
-        let without = search(&plant, narrow()).rivalled(&climb(&plant, Vec::new()), &last);
+        let without = search(&plant, narrow()).instead(&climb(&plant, Vec::new()), &last);
         assert_eq!(without.is_none(), stand);
     }
 }
@@ -24,7 +24,7 @@ fn a_shape_of_a_rival_that_predicts_worse_goes_with_the_others() {
     let thresholds = Thresholds { share: 0.0, ..narrow() };
     let last = node(&plant, &hidden);
     let (without, remains) =
-        search(&plant, thresholds).rivalled(&climb(&plant, Vec::new()), &last).unwrap();
+        search(&plant, thresholds).instead(&climb(&plant, Vec::new()), &last).unwrap();
     assert!(without.effects(&plant).is_empty());
     let Remains::Rival { instead_of, .. } = remains else { panic!("{remains:?}") };
     assert_eq!(instead_of.len(), 2);
@@ -62,6 +62,24 @@ fn a_refused_set_takes_back_the_effects_that_it_does_without() {
     assert_eq!(without.effects(&plant), [WAVE]);
     let Remains::Outdone { by, instead_of, .. } = remains else { panic!("{remains:?}") };
     assert_eq!((by, instead_of), (vec!["wave".into(), "beat".into()], vec!["push".to_owned()]));
+}
+
+#[test]
+fn a_rival_that_is_told_beside_all_effects_does_not_keep_a_refused_set_from_taking_them_back() {
+    let push: (usize, &[f64]) = (PUSH, &[0.3]);
+    let mut plant = Plant::new(15, &[push, (WAVE, &[0.5]), (BEAT, &[-0.2])]);
+    plant.kin = Vec::new();
+    let last = node(&plant, &[push]);
+    let mut climb = climb(&plant, Vec::new());
+    let mut search = search(&plant, Thresholds { share: 0.0, ..narrow() });
+    let (beside, remains) = search.instead(&climb, &last).unwrap();
+    assert_eq!(beside.effects(&plant), [PUSH]);
+    assert!(matches!(remains, Remains::Rival { instead_of, .. } if instead_of.is_empty()));
+    let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
+    climb.refused.push((node(&plant, &[(WAVE, &[0.5])]), refusal));
+    let (without, remains) = search.instead(&climb, &last).unwrap();
+    assert!(without.effects(&plant).is_empty());
+    assert!(matches!(remains, Remains::Outdone { .. }), "{remains:?}");
 }
 
 #[test]
