@@ -29,6 +29,9 @@ struct Cli {
     command: Command,
 }
 
+/// Most threads for each processor.
+const MOST_THREADS: usize = 8;
+
 const EXAMPLES: &str = "\
 Examples:
   aep discover                                  the example that comes with the program
@@ -81,12 +84,24 @@ pub fn as_typed(words: impl IntoIterator<Item = OsString>) -> Result<(), Failure
 }
 
 fn run(cli: Cli) -> Result<(), Failure> {
-    if let Some(threads) = cli.global.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+    if let Some(asked) = cli.global.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads(asked.get()));
         pool.build_global().map_err(|error| Failure::failed(error.to_string()))?;
     }
     args::add_files(&cli.effects_file)?;
     cli.command.run(cli.global)
+}
+
+/// Threads to use where so many are asked for: more than a few for each processor take its time and memory and do nothing.
+fn threads(asked: usize) -> usize {
+    let processors = std::thread::available_parallelism().map_or(1, std::num::NonZeroUsize::get);
+    let most = MOST_THREADS * processors;
+    if asked > most {
+        output::warn(&format!(
+            "{most} threads are used, not {asked}: there are {processors} processors"
+        ));
+    }
+    asked.min(most)
 }
 
 #[cfg(test)]

@@ -55,6 +55,13 @@ pub fn error(failure: &Failure) {
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
+/// Prints what is done otherwise than asked.
+pub fn warn(what: &str) {
+    let yellow = Style::new().bold().fg_color(Some(AnsiColor::Yellow.into()));
+    let _ =
+        anstream::stderr().lock().write_all(format!("{yellow}note:{yellow:#} {what}\n").as_bytes());
+}
+
 fn format_lines(indent: &str, text: &str) -> String {
     text.lines().map(|line| format!("{indent}{line}\n")).collect::<Vec<String>>().concat()
 }

@@ -17,9 +17,12 @@ use crate::table::Table;
 
 /// Largest value in SI that any channel may have.
 const LARGEST: f64 = 1e12;
-/// Shortest and longest sampling interval, s.
+/// Smallest range in SI of a channel that changes at all.
+const SMALLEST: f64 = 1e-12;
+/// Shortest and longest sampling interval, s. Friction, gaps and couplings act within milliseconds: of slower samples nothing
+/// of them can be told, and milliseconds that are read as seconds are as long.
 const SHORTEST: f64 = 1e-8;
-const LONGEST: f64 = 10.0;
+const LONGEST: f64 = 0.2;
 
 /// A recording and how it was read.
 #[derive(Clone, Debug, PartialEq)]
@@ -295,7 +298,7 @@ fn recording(
     Ok((left, switched_off))
 }
 
-/// Refuses values so large that no machine has them and that squares of them overflow.
+/// Refuses values so large, or changes so small, that no machine has them and that squares of them are no numbers.
 fn check_size(
     values: &[f64],
     unit: &'static str,
@@ -303,10 +306,17 @@ fn check_size(
     table: &dyn Table,
     path: &Path,
 ) -> Result<(), DataError> {
+    let role = pick.role.facts().name;
     let Some(sample) = values.iter().position(|value| value.abs() > LARGEST) else {
+        let (low, high) =
+            values.iter().fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(*x), h.max(*x)));
+        if high > low && high - low < SMALLEST {
+            let problem = Problem::Tiny { role, range: high - low, unit };
+            return Err(DataError::new(path, problem).in_column(&pick.expression.text));
+        }
         return Ok(());
     };
-    let (role, value) = (pick.role.facts().name, values[sample]);
+    let value = values[sample];
     let error = DataError::new(path, Problem::Implausible { role, value, unit });
     Err(error.at_sample(sample, table.line(sample)).in_column(&pick.expression.text))
 }

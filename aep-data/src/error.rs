@@ -344,6 +344,16 @@ pub enum Problem {
         /// SI unit.
         unit: &'static str,
     },
+    /// Changes that no sensor sees.
+    #[error("the {role} changes by {range:.2e} {unit} in all: no sensor sees that")]
+    Tiny {
+        /// What it is.
+        role: &'static str,
+        /// Largest less smallest value in SI.
+        range: f64,
+        /// SI unit.
+        unit: &'static str,
+    },
     /// A sampling interval that no recording of a drive has.
     #[error("one sample every {interval:.2e} s is no recording of a drive")]
     Interval {
@@ -518,7 +528,7 @@ impl Problem {
                 "sort the rows by time; where a new run begins, number the runs in a column 'segment'"
                     .to_owned()
             }
-            Self::Implausible { role, .. } => {
+            Self::Implausible { role, .. } | Self::Tiny { role, .. } => {
                 format!("check unit and gain: --{role}-unit UNIT, --{role}-gain G, or in {toml}")
             }
             Self::Interval { .. } => {

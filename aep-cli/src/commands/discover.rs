@@ -120,6 +120,12 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     )?;
     stop::at_once();
     let loaded = match args.data.as_slice() {
+        [] if !args.mapping.words().is_empty() => {
+            let words = args.mapping.words();
+            let what = format!("there is no recording to read with{words}");
+            return Err(Failure::bad_input(what)
+                .with_hint("name the file: aep discover DATA ...; without one and without these flags the example is searched"));
+        }
         [] => crate::example::load()?,
         paths => args.mapping.read_all(paths)?,
     };

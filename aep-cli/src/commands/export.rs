@@ -16,7 +16,7 @@ use crate::app::Global;
 use crate::args::{LoopArgs, ReferenceArgs};
 use crate::failure::Failure;
 use crate::output::{self, written};
-use crate::steps;
+use crate::{outputs, steps};
 
 /// Export a model: to a simulator (FMU, MJCF, URDF), its friction compensator as C, or as JSON with a schema
 ///
@@ -95,6 +95,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let Some(path) = args.path.as_ref().or(args.output.as_ref()) else {
         return Err(Failure::bad_input("say where to write: -o PATH"));
     };
+    let read: Vec<PathBuf> = args.model.iter().cloned().collect();
+    outputs::check(&read, &[("--output", Some(path))])?;
     let files = match args.to {
         Form::C => c(args, path)?,
         Form::Fmu => fmu::write(&plant(args)?, args, path)?,

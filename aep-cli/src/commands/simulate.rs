@@ -7,7 +7,7 @@ use friction_ident::simulator::{deviation, free_run};
 use friction_ident::{Axis, Effort, Model, SimulationError};
 use missing_physics::measurement::quantity::quantity;
 
-use crate::steps;
+use crate::{outputs, steps};
 use crate::app::Global;
 use crate::args::MappingArgs;
 use crate::failure::Failure;
@@ -46,6 +46,8 @@ impl From<SimulationError> for Failure {
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let read = [args.model.clone(), args.input.clone()];
+    outputs::check(&read, &[("--output", Some(&args.output))])?;
     let model = steps::read_plant(&args.model)?;
     let loaded = args.mapping.read(&args.input)?;
     check_axis(&model, &loaded)?;

@@ -8,7 +8,7 @@ use missing_physics::{likely, suggest};
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
 
-use crate::steps;
+use crate::{outputs, steps};
 use crate::app::Global;
 use crate::args::{self, DataArgs, EffectNames, KnownArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
@@ -54,6 +54,15 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let read: Vec<PathBuf> = args.data.paths().iter().chain(&args.model).cloned().collect();
+    outputs::check(
+        &read,
+        &[
+            ("--experiment", args.experiment.as_deref()),
+            ("--json", args.results.json.as_deref()),
+            ("--html", args.results.html.as_deref()),
+        ],
+    )?;
     stop::at_once();
     let loaded = args.data.read()?;
     let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;

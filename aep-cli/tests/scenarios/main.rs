@@ -5,6 +5,7 @@ mod bad_input;
 mod control;
 mod discovery;
 mod files;
+mod hard_inputs;
 mod harness;
 mod help;
 mod loop_by_hand;

@@ -34,6 +34,15 @@ pub fn finding(finding: &Finding) -> String {
             quantity(*level, unit),
             percent(*share)
         ),
+        Finding::NegativeWork { share } => format!(
+            "on the whole the force takes energy out of the axis ({} of all that goes to and fro), where it should move it against \
+             friction: the sign of force or position is probably turned (--force-gain -1)",
+            percent(-share)
+        ),
+        Finding::Fast { top, unit } => format!(
+            "speeds up to {}: are position and time really in these units (--position-unit mm)?",
+            quantity(*top, unit)
+        ),
         Finding::OneDirection => {
             "the axis moves in one direction only: friction and a constant force cannot be told apart"
                 .to_owned()

@@ -15,6 +15,7 @@ mod quantum;
 mod sampling;
 mod saturation;
 mod speed;
+mod work;
 
 pub use cycle::Cycle;
 pub use finding::{Finding, Severity};
@@ -81,7 +82,7 @@ pub fn check(recording: &Recording) -> DataCheck {
         cycle: Cycle::of(recording),
         findings: Vec::new(),
     };
-    check.findings = check.conclude();
+    check.findings = check.conclude(work::finding(recording));
     check
 }
 
@@ -113,8 +114,8 @@ impl DataCheck {
         self.channels.iter().find(|channel| channel.name == name)
     }
 
-    fn conclude(&self) -> Vec<Finding> {
-        let mut findings = Vec::new();
+    fn conclude(&self, work: Option<Finding>) -> Vec<Finding> {
+        let mut findings: Vec<Finding> = work.into_iter().collect();
         self.sampling.findings(&mut findings);
         for channel in &self.channels {
             channel.findings(&mut findings);

@@ -15,12 +15,22 @@ pub enum DiscoverError {
         /// Every name there is.
         known: String,
     },
+    /// Two forms of one effect, where a model has one.
+    #[error(
+        "'{first}' and '{second}' are two forms of one effect\na model has one of them: leave one out"
+    )]
+    TwoForms {
+        /// The one that was named first.
+        first: String,
+        /// The other one.
+        second: String,
+    },
 }
 
 /// The indices of terms by name, those of every model first.
 ///
 /// # Errors
-/// [`DiscoverError::UnknownTerm`] for a name that the family does not have.
+/// [`DiscoverError::UnknownTerm`] for a name that the family does not have, [`DiscoverError::TwoForms`] for two of one effect.
 pub fn terms<F: ModelFamily + ?Sized>(
     family: &F,
     names: &[String],
@@ -33,9 +43,15 @@ pub fn terms<F: ModelFamily + ?Sized>(
                 all.iter().filter(|t| !t.always).map(|t| t.name.as_str()).collect();
             DiscoverError::UnknownTerm { name: name.clone(), known: known.join(", ") }
         })?;
-        if !indices.contains(&index) {
-            indices.push(index);
+        if indices.contains(&index) {
+            continue;
         }
+        let main = |term: usize| family.form_of(term).unwrap_or(term);
+        if let Some(other) = indices.iter().find(|other| main(**other) == main(index)) {
+            let (first, second) = (all[*other].name.clone(), name.clone());
+            return Err(DiscoverError::TwoForms { first, second });
+        }
+        indices.push(index);
     }
     Ok(indices)
 }

@@ -63,6 +63,18 @@ pub enum Finding {
         /// Share of the samples, 0..1.
         share: f64,
     },
+    /// The force takes energy out of the axis, as none does that moves it against friction.
+    NegativeWork {
+        /// Sum of force times way over the sum of their sizes, -1..0.
+        share: f64,
+    },
+    /// No axis moves so fast.
+    Fast {
+        /// Speed that is exceeded in 1 % of the samples.
+        top: f64,
+        /// Unit of the speed.
+        unit: String,
+    },
     /// The axis moves in one direction: friction and a constant force cannot be told apart.
     OneDirection,
     /// The direction changes too rarely to be sure of what happens there.
@@ -120,6 +132,8 @@ impl Finding {
             | Self::SlowSampling { .. }
             | Self::Jitter { .. }
             | Self::Clipped { .. }
+            | Self::NegativeWork { .. }
+            | Self::Fast { .. }
             | Self::OneDirection
             | Self::FewReversals { .. }
             | Self::Counts { coarse: true, .. } => Severity::Warning,

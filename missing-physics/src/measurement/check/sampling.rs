@@ -10,7 +10,7 @@ use crate::measurement::Recording;
 const GAP: f64 = 2.5;
 
 /// A sampling interval longer than this is probably in another unit, s.
-const SLOW: f64 = 0.2;
+const SLOW: f64 = 0.05;
 
 /// Intervals that vary by more than this share of the median are told.
 const JITTER: f64 = 0.05;

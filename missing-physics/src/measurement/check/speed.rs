@@ -11,6 +11,9 @@ const SLOW: f64 = 0.02;
 const FEW: usize = 4;
 /// One count a sample is coarse from this share of the top speed on.
 const COARSE: f64 = 0.2;
+/// Faster no axis moves: linear motors reach 10 m/s, spindles 6000 rad/s. A wrong unit makes a factor of 57 or more.
+const FASTEST: f64 = 30.0;
+const FASTEST_TURN: f64 = 2e4;
 
 /// How the axis moves.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,6 +74,9 @@ impl Speed {
             findings.push(Finding::FewReversals { reversals: self.reversals });
         }
         let (top, unit) = (self.top, self.unit.clone());
+        if top > if position.unit == "rad" { FASTEST_TURN } else { FASTEST } {
+            findings.push(Finding::Fast { top, unit: unit.clone() });
+        }
         if let Some(count) = position.quantum {
             let step = count / interval;
             findings.push(Finding::Counts {

@@ -104,3 +104,40 @@ fn the_smallest_recording_is_no_problem() {
     let recording = Recording::with_segments("dots", time, channels, alone).unwrap();
     assert_eq!(super::check(&recording).sampling.duration_s, 0.0);
 }
+
+#[test]
+fn a_force_that_takes_energy_out_of_the_axis_has_the_wrong_sign() {
+    let negative = |recording: &Recording| {
+        let findings = check(recording).findings;
+        findings.iter().any(|finding| matches!(finding, Finding::NegativeWork { .. }))
+    };
+    let time = |k| f64::from(k) * 1e-3;
+    assert!(!negative(&recording()));
+    assert!(negative(&from(time, |force| -force)));
+    // Mostly inertia: the work of 20 ms of delay is more than that of the friction, but nothing is turned.
+    let axis = |delay: f64, sign: f64| {
+        let angle = |k: u32, late: f64| 6.0 * (time(k) - late);
+        let position = (0..10_000).map(|k| 0.02 * angle(k, 0.0).sin()).collect();
+        let force =
+            |k| sign * (-30.0 * angle(k, delay).sin() + 2.0 * angle(k, delay).cos().signum());
+        let force = (0..10_000).map(force).collect();
+        let channels =
+            vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+        Recording::new("axis", (0..10_000).map(time).collect(), channels).unwrap()
+    };
+    assert!(!negative(&axis(0.0, 1.0)) && !negative(&axis(0.02, 1.0)));
+    assert!(negative(&axis(0.0, -1.0)));
+}
+
+#[test]
+fn millimetres_that_are_read_as_metres_are_asked_about() {
+    let check = check(&{
+        let recording = recording();
+        let position = recording.channel("position").unwrap().values.iter().map(|x| 1e3 * x);
+        let channels = vec![Channel::new("position", "m", position.collect())];
+        Recording::new("mm", recording.time().to_vec(), channels).unwrap()
+    });
+    assert!(
+        matches!(&check.findings[0], Finding::Fast { top, unit } if *top > 100.0 && unit == "m/s")
+    );
+}

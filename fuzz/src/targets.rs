@@ -1,0 +1,55 @@
+//! The ways in.
+
+mod files;
+mod joints;
+mod runs;
+mod texts;
+
+/// A way in.
+#[derive(Debug)]
+pub struct Target {
+    /// Its name.
+    pub name: &'static str,
+    /// Inputs that are as they should be.
+    pub seeds: fn() -> Vec<Vec<u8>>,
+    /// Takes an input and says how far it came, without the numbers in it.
+    pub run: fn(&[u8]) -> String,
+}
+
+/// All of them.
+pub static ALL: [Target; 13] = [
+    files::CSV,
+    files::MAT,
+    files::HDF5,
+    files::NPZ,
+    files::PARQUET,
+    files::XLSX,
+    files::MCAP,
+    texts::MAPPING,
+    texts::FORMULA,
+    texts::EFFECT,
+    texts::MODEL,
+    runs::CHECKPOINT,
+    runs::STATE,
+];
+
+/// The one called `name`.
+///
+/// # Errors
+/// There is none.
+pub fn find(name: &str) -> anyhow::Result<&'static Target> {
+    ALL.iter().find(|target| target.name == name).ok_or_else(|| {
+        let all: Vec<&str> = ALL.iter().map(|target| target.name).collect();
+        anyhow::anyhow!("there is no target '{name}'\n  there are: {}", all.join(", "))
+    })
+}
+
+/// A sentence without what differs from input to input: numbers and what is quoted.
+fn outline(sentence: &str) -> String {
+    let mut quoted = false;
+    let kept = sentence.chars().filter(|c| {
+        quoted ^= matches!(c, '\'' | '"' | '`');
+        !quoted && (c.is_ascii_alphabetic() || *c == ' ')
+    });
+    kept.take(200).collect()
+}
