@@ -26,7 +26,7 @@ impl FrictionFamily {
     ) -> Result<Searched, IdentifyError> {
         let first = self.first_guess(recording, effects, seed, until)?;
         let problem = Identification::new(&first, recording, &all_free(&first), horizon)?;
-        Ok(problem.until(until).from_several_starts(method, budget, seed)?)
+        problem.until(until).from_several_starts(method, budget, seed)
     }
 
     /// Values from the comparison of forces; typical ones for effects that it cannot show.
