@@ -56,6 +56,9 @@ fn stoppable<R: Send>(
     Ok((result?, raised))
 }
 
+/// The family, what is told of the models, and every model as it is.
+type Comparing = (FrictionFamily, GivenModels, Vec<(String, Fit)>);
+
 /// Models, each with its name, on data, nothing fitted: everything is told of the first one, the views of each. Returns it, the
 /// views as JSON, and what ended it early.
 #[pyfunction]
@@ -69,7 +72,7 @@ pub fn compare(
     let options = search.options(given, None)?;
     let read = models.iter().map(|(name, text)| Ok((name.clone(), read_model(given, text)?)));
     let read: Vec<(String, Model)> = read.collect::<PyResult<_>>()?;
-    let work = |until: Until<'_>| -> PyResult<(FrictionFamily, GivenModels, Vec<(String, Fit)>)> {
+    let work = |until: Until<'_>| -> PyResult<Comparing> {
         let family = family(given, &options)?;
         let fit = |(name, model): &(String, Model)| {
             Ok((name.clone(), family.as_given(model).map_err(|error| foreign(&error))?))
