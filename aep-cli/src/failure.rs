@@ -5,7 +5,7 @@ use std::path::Path;
 use aep_data::{DataError, SaveError};
 use friction_ident::ModelError;
 use friction_ident::effects::UnknownEffect;
-use friction_ident::family::PreparationError;
+use friction_ident::family::{ForeignModel, PreparationError};
 use friction_ident::identify::IdentifyError;
 use missing_physics::DiscoverError;
 
@@ -100,7 +100,10 @@ impl From<ModelError> for Failure {
 
 impl From<IdentifyError> for Failure {
     fn from(error: IdentifyError) -> Self {
-        Self::from_lines(&error.to_string())
+        match error {
+            IdentifyError::Term(error) => error.into(),
+            error => Self::from_lines(&error.to_string()),
+        }
     }
 }
 
@@ -113,6 +116,26 @@ impl From<UnknownEffect> for Failure {
 impl From<DiscoverError> for Failure {
     fn from(error: DiscoverError) -> Self {
         Self::bad_input(error.to_string()).with_hint("'aep effects' lists them with equations")
+    }
+}
+
+impl From<ForeignModel> for Failure {
+    fn from(error: ForeignModel) -> Self {
+        let hint = match error {
+            ForeignModel::Axis => "identify a model on this data with 'aep identify'",
+            ForeignModel::Effort { .. } => {
+                "read both in one unit: --force-unit V, or a gain: --force-gain G"
+            }
+            ForeignModel::WithMass => {
+                "leave --model-force out, or make a model beside it: 'aep identify DATA --model-force COLUMN --effects offset'"
+            }
+            ForeignModel::Beside => "say the column of that force: --model-force COLUMN",
+            ForeignModel::Law(error) => return error.into(),
+            ForeignModel::Term(error) => return error.into(),
+            ForeignModel::Model(error) => return error.into(),
+            other => return Self::from_lines(&other.to_string()),
+        };
+        Self::bad_input(error.to_string()).with_hint(hint)
     }
 }
 

@@ -14,6 +14,7 @@ mod check;
 mod confirmation;
 mod discovery;
 mod residual;
+mod simulated;
 mod style;
 mod table;
 mod views;
@@ -25,6 +26,7 @@ pub use discovery::{
     verdict, where_it_fails, why,
 };
 pub use residual::{lines, tests};
+pub use simulated::simulated;
 pub use style::{bold, dim, heading};
 pub use table::{Align, Table};
 pub use views::{views, warnings};

@@ -2,35 +2,21 @@
 
 use std::path::Path;
 
-use aep_core::{Aep, MetaEp, Method};
+use aep_core::Method;
 use friction_ident::effects::Effect;
 use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::model::Timing;
 use friction_ident::{Axis, Effort, Known, Model, Quantity};
-use missing_physics::diagnosis::fitted_blocks;
-use missing_physics::fit::{self, Fit};
 use missing_physics::measurement::cut_at_gaps;
-use missing_physics::report::Rung;
-use missing_physics::{Discovery, Fitted, Recording, model_of, terms};
+use missing_physics::{Discovery, Fitted, Recording, model_of};
 
 use crate::args::library;
 use crate::failure::Failure;
-use crate::stop::Watch;
 
-mod in_time;
-mod stoppable;
-
-pub use in_time::identify_in_time;
-
-use stoppable::Stoppable;
-
-/// A name and what makes the optimizer.
-type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
-
-/// Optimizers by name.
-pub const ALGORITHMS: &[NamedMethod] =
-    &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
+/// Optimizers by name, and what the library calls them.
+pub const ALGORITHMS: &[(&str, &str)] =
+    &[("aep", "aep-practical"), ("meta-ep", "meta-ep-practical")];
 
 /// The model family of a recording; nothing is interpolated over its long gaps.
 pub fn family(
@@ -111,67 +97,12 @@ pub fn needs_plant(family: &FrictionFamily) -> Result<(), Failure> {
         .with_hint("leave --model-force out, or compare forces (--horizon force)"))
 }
 
-/// Identifies a model of these effects on the fitted blocks; once `watch` is over the best one so far is
-/// taken.
-pub fn identify(
-    family: &FrictionFamily,
-    effects: &[String],
-    (method, seed): (&dyn Method<f64>, u64),
-    watch: Watch,
-) -> Result<(Fit, usize), Failure> {
-    let terms = terms(family, effects)?;
-    let method = Stoppable { method, watch };
-    let found = fit::identify_by(family, &terms, &fitted_blocks(family), seed, &method);
-    Ok((found.fit, found.evaluations))
-}
-
-/// The optimizer of this name.
-pub fn method(name: &str) -> Result<Box<dyn Method<f64>>, Failure> {
+/// The optimizer of this name with a population, 0 for its own.
+pub fn method(name: &str, population: usize) -> Result<Box<dyn Method<f64>>, Failure> {
     let known = ALGORITHMS.iter().find(|(known, _)| *known == name);
-    let known = known.ok_or_else(|| Failure::bad_input(format!("unknown algorithm '{name}'")))?;
-    Ok(known.1())
-}
-
-/// A given model on this data, nothing fitted.
-pub fn as_given(family: &FrictionFamily, model: &Model) -> Result<Fit, Failure> {
-    same_axis(family, model)?;
-    family.check(model)?;
-    Ok(fit::as_given(family, family.fitted(model)?))
-}
-
-/// Refuses a model of a linear axis for rotary data and the other way round, and forces in another unit.
-pub fn same_axis(family: &FrictionFamily, model: &Model) -> Result<(), Failure> {
-    if model.axis() != family.axis() {
-        return Err(other_axis());
-    }
-    same_effort(model, family.effort())?;
-    if model.timing().is_some() == family.is_beside() {
-        return Ok(());
-    }
-    let (what, hint) = if family.is_beside() {
-        (
-            "the model has a mass of its own, but the data are read with --model-force",
-            "leave --model-force out, or make a model beside it: 'aep identify DATA --model-force COLUMN --effects offset'",
-        )
-    } else {
-        (
-            "the model stands beside a force that another model gives, but the data are read without it",
-            "say the column of that force: --model-force COLUMN",
-        )
-    };
-    Err(Failure::bad_input(what).with_hint(hint))
-}
-
-/// Refuses a model in volts for a force in newtons, and the like.
-pub fn same_effort(model: &Model, effort: Effort) -> Result<(), Failure> {
-    if model.effort() == effort {
-        return Ok(());
-    }
-    let unit = |effort: Effort| effort.unit(model.axis(), Quantity::Force);
-    let (there, here) = (unit(model.effort()), unit(effort));
-    let what = format!("the model is in {there}, but the force of the data is in {here}");
-    Err(Failure::bad_input(what)
-        .with_hint("read both in one unit: --force-unit V, or a gain: --force-gain G"))
+    let found = known.and_then(|(_, name)| aep_core::methods::find(name));
+    let found = found.ok_or_else(|| Failure::bad_input(format!("unknown algorithm '{name}'")))?;
+    Ok((found.build)(population))
 }
 
 /// Refuses to compute a command in newtons from a model in volts or amperes.
@@ -197,16 +128,4 @@ pub fn same_axes(family: &FrictionFamily, other: &FrictionFamily) -> Result<(), 
         "one of the recordings is of a linear axis, the other of a rotary one"
     };
     Err(Failure::bad_input(what).with_hint("give --validate recordings of the same drive"))
-}
-
-/// The failure of a model and data that do not belong together.
-pub fn other_axis() -> Failure {
-    let what = "one of model and data is of a linear axis, the other of a rotary one";
-    Failure::bad_input(what).with_hint("identify a model on this data with 'aep identify'")
-}
-
-/// The plant that a rung describes.
-pub fn model(family: &FrictionFamily, rung: &Rung) -> Result<Model, Failure> {
-    let model = family.model(&model_of(family, rung)?)?;
-    Ok(model.with_known(family.known().clone()))
 }

@@ -4,6 +4,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use missing_physics::fit::Until;
+
 use crate::failure::{Failure, INTERRUPTED};
 
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -68,9 +70,9 @@ impl Watch {
         self.flag.load(Ordering::Relaxed)
     }
 
-    /// The flag that Ctrl-C sets.
-    pub fn flag(self) -> &'static AtomicBool {
-        self.flag
+    /// The same as the libraries know it.
+    pub fn until(self) -> Until<'static> {
+        Until { stop: Some(self.flag), at: self.until }
     }
 
     /// Time that is left; none where there is no limit.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use friction_ident::family::FrictionFamily;
 use missing_physics::report::Confirmed;
-use missing_physics::{Discovery, confirm, model_of};
+use missing_physics::{Discovery, confirm};
 use pyo3::prelude::*;
 
 use crate::failure::bad_input;
@@ -52,9 +52,7 @@ pub fn discover(
             discovery.confirmation = Some(Confirmed { recording, rungs });
         }
         if let Some(last) = discovery.ladder.last().filter(|_| surrogates > 0 && go_on()) {
-            let fitted = model_of(&family, last).map_err(bad_input)?;
-            let model = family.model(&fitted).map_err(bad_input)?;
-            let model = model.with_known(family.known().clone());
+            let model = family.plant(last).map_err(bad_input)?;
             let found = family
                 .false_alarms(&model, (&settings, &options), surrogates, |_| go_on())
                 .map_err(bad_input)?;

@@ -1,17 +1,15 @@
 //! The loop by hand: a model held against data, what it may lack, one effect more, what to run next.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
-use aep_core::Aep;
 use aep_studio::words;
 use friction_ident::challenge::{Hide, Level, generate};
-use friction_ident::family::{Decides, FrictionFamily, explained};
+use friction_ident::family::{Decides, ForeignModel, FrictionFamily, GivenModels, explained};
 use friction_ident::simulator::free_run;
 use friction_ident::{Library, Model};
-use missing_physics::diagnosis::{self, fitted_blocks};
-use missing_physics::fit::{self, Fit};
+use missing_physics::fit::{Fit, Until};
 use missing_physics::report::View;
-use missing_physics::{Discovery, terms};
+use missing_physics::{Discovery, Extended};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
@@ -28,45 +26,38 @@ fn read_model(data: &Data, text: &str) -> PyResult<Model> {
     Model::from_json(text, &data.library).map_err(|error| bad_input(keywords(&error.to_string())))
 }
 
-/// Refuses a model that is not of the kind of data: linear or rotary, the unit of its force, a mass of its own or none.
-fn check(family: &FrictionFamily, model: &Model) -> PyResult<()> {
-    if model.axis() != family.axis() {
-        return Err(bad_input(
-            "one of model and data is of a linear axis, the other of a rotary one\n  use a model that was made from these data",
-        ));
-    }
-    if model.effort() != family.effort() {
-        return Err(bad_input(
-            "the forces of model and data are not in one unit\n  read both in one: force_unit='V', or a gain: force_gain=...",
-        ));
-    }
-    if model.timing().is_some() != family.is_beside() {
-        return Err(bad_input(
-            "one of model and data stands beside a force that another model gives, the other does not\n  \
-             give model_force=... where the model was made with it, and only there",
-        ));
-    }
-    family.check(model).map_err(|error| bad_input(keywords(&error.to_string())))
-}
-
-fn as_given(family: &FrictionFamily, model: &Model) -> PyResult<Fit> {
-    check(family, model)?;
-    Ok(fit::as_given(family, family.fitted(model).map_err(bad_input)?))
+/// Why a model and data do not belong together, and how to mend it.
+fn foreign(error: &ForeignModel) -> PyErr {
+    let hint = match error {
+        ForeignModel::Axis => "use a model that was made from these data",
+        ForeignModel::Effort { .. } => {
+            "read both in one unit: force_unit='V', or a gain: force_gain=..."
+        }
+        ForeignModel::WithMass | ForeignModel::Beside => {
+            "give model_force=... where the model was made with it, and only there"
+        }
+        other => return bad_input(keywords(&other.to_string())),
+    };
+    bad_input(format!("{error}\n  {hint}"))
 }
 
 /// Runs `work` where Ctrl-C ends it.
 fn stoppable<R: Send>(
     py: Python<'_>,
-    work: impl FnOnce(&AtomicBool) -> PyResult<R> + Send,
+    work: impl FnOnce(Until<'_>) -> PyResult<R> + Send,
 ) -> PyResult<(R, Option<PyErr>)> {
     let stop = AtomicBool::new(false);
-    let (result, raised) =
-        watched(py, &stop, |_: std::sync::mpsc::Sender<()>| work(&stop), |_, ()| Ok(()))?;
+    let (result, raised) = watched(
+        py,
+        &stop,
+        |_: std::sync::mpsc::Sender<()>| work(Until::stopped(&stop)),
+        |_, ()| Ok(()),
+    )?;
     Ok((result?, raised))
 }
 
-/// The family, what is told of the first model, every model as it is, and its views.
-type Compared = (FrictionFamily, Discovery, Vec<Fit>, Vec<Vec<View>>);
+/// The family, what is told of the models, and every model as it is.
+type Comparing = (FrictionFamily, GivenModels, Vec<(String, Fit)>);
 
 /// Models, each with its name, on data, nothing fitted: everything is told of the first one, the views of each. Returns it, the
 /// views as JSON, and what ended it early.
@@ -79,43 +70,24 @@ pub fn compare(
 ) -> PyResult<(Found, String, Option<PyErr>)> {
     let given = data.get();
     let options = search.options(given, None)?;
-    let named = models.iter().map(|(_, text)| read_model(given, text));
-    let read: Vec<Model> = named.collect::<PyResult<_>>()?;
-    let work = |stop: &AtomicBool| -> PyResult<Compared> {
+    let read = models.iter().map(|(name, text)| Ok((name.clone(), read_model(given, text)?)));
+    let read: Vec<(String, Model)> = read.collect::<PyResult<_>>()?;
+    let work = |until: Until<'_>| -> PyResult<Comparing> {
         let family = family(given, &options)?;
-        let fits: Vec<Fit> =
-            read.iter().map(|model| as_given(&family, model)).collect::<Result<_, _>>()?;
-        let fit = fits.first().ok_or_else(|| bad_input("a model is needed"))?;
-        let rung = diagnosis::rung(&family, fit, &[]);
-        let over = || stop.load(Ordering::Relaxed);
-        let mut discovery =
-            diagnosis::comparison(&family, (fit, fit), vec![rung], search.seed, &over);
-        let (mut views, mut notes) = (Vec::new(), Vec::new());
-        for fit in fits.iter().take_while(|_| !over()) {
-            let all = family.side_by_side(&fit.model).map_err(bad_input)?;
-            views.push(all.views);
-            notes.extend(
-                all.notes.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>(),
-            );
-        }
-        discovery.views = views.first().cloned().unwrap_or_default();
-        let named: Vec<(String, Vec<View>)> =
-            models.iter().map(|(name, _)| name.clone()).zip(views.iter().cloned()).collect();
-        let between = diagnosis::views::disagreements(&named);
-        notes.splice(0..0, between.iter().map(words::disagreement));
-        notes.append(&mut discovery.notes);
-        discovery.notes = notes;
-        discovery.stopped |= over();
-        Ok((family, discovery, fits, views))
+        let fit = |(name, model): &(String, Model)| {
+            Ok((name.clone(), family.as_given(model).map_err(|error| foreign(&error))?))
+        };
+        let fits: Vec<(String, Fit)> = read.iter().map(fit).collect::<PyResult<_>>()?;
+        let compared = family.compared(&fits, search.seed, until).map_err(bad_input)?;
+        Ok((family, compared.ok_or_else(|| bad_input("a model is needed"))?, fits))
     };
-    let ((family, discovery, fits, views), raised) = stoppable(py, work)?;
-    let models: Vec<_> = models
-        .into_iter()
-        .map(|(name, _)| name)
-        .zip(fits.into_iter().map(|fit| fit.model))
-        .collect();
+    let ((family, compared, fits), raised) = stoppable(py, work)?;
+    let GivenModels { mut discovery, models, between, missing } = compared;
+    discovery.notes = between.iter().map(words::disagreement).chain(missing).collect();
+    let fits = fits.into_iter().map(|(name, fit)| (name, fit.model)).collect();
+    let views: Vec<Vec<View>> = models.into_iter().map(|(_, views)| views).collect();
     let views = serde_json::to_string(&views).map_err(bad_input)?;
-    Ok((Found::comparison(data, family, discovery, models, Decides::Force), views, raised))
+    Ok((Found::comparison(data, family, discovery, fits, Decides::Force), views, raised))
 }
 
 /// Which effect a model lacks, without adding it.
@@ -135,7 +107,7 @@ pub fn suggest(
     let options = search.options(given, Some(model.known()))?;
     let work = |events| -> PyResult<(FrictionFamily, Discovery)> {
         let family = family(given, &options)?;
-        check(&family, &model)?;
+        family.belongs(&model).map_err(|error| foreign(&error))?;
         let found = missing_physics::suggest(&family, &settings, &mut Sends(events));
         Ok((family, found.map_err(bad_input)?))
     };
@@ -160,31 +132,22 @@ pub fn extend(
     let given = data.get();
     let model = read_model(given, &model)?;
     let added = known(&given.library, &[add])?;
-    let mut effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
-    if effects.contains(&added[0]) {
+    if model.effects().contains(&added[0].as_str()) {
         return Err(bad_input(format!(
             "the model has '{}' already\n  suggest tells which other effect would help",
             added[0]
         )));
     }
-    effects.extend(added.iter().cloned());
     let options = search.options(given, Some(model.known()))?;
-    let work = |stop: &AtomicBool| -> PyResult<(FrictionFamily, Discovery, [Fit; 2])> {
+    let work = |until: Until<'_>| -> PyResult<(FrictionFamily, Fit, Extended)> {
         let family = family(given, &options)?;
-        let before = as_given(&family, &model)?;
-        let terms = terms(&family, &effects).map_err(bad_input)?;
-        let blocks = fitted_blocks(&family);
-        let after = fit::identify_by(&family, &terms, &blocks, search.seed, &Aep::practical()).fit;
-        let rungs =
-            vec![diagnosis::rung(&family, &before, &[]), diagnosis::rung(&family, &after, &added)];
-        let over = || stop.load(Ordering::Relaxed);
-        let discovery =
-            diagnosis::comparison(&family, (&before, &after), rungs, search.seed, &over);
-        Ok((family, discovery, [before, after]))
+        let before = family.as_given(&model).map_err(|error| foreign(&error))?;
+        let after = missing_physics::extend(&family, &before, &added[0], search.seed, until);
+        Ok((family, before, after.map_err(bad_input)?))
     };
-    let ((family, discovery, [before, after]), raised) = stoppable(py, work)?;
-    let models = vec![("before".to_owned(), before.model), ("after".to_owned(), after.model)];
-    Ok((Found::comparison(data, family, discovery, models, Decides::FittedForce), raised))
+    let ((family, before, after), raised) = stoppable(py, work)?;
+    let models = vec![("before".to_owned(), before.model), ("after".to_owned(), after.fit.model)];
+    Ok((Found::comparison(data, family, after.comparison, models, Decides::FittedForce), raised))
 }
 
 /// The motion that tells rivals apart, each of them on top of the effects `below`: what is known of it as JSON, and time and
@@ -201,7 +164,7 @@ pub fn experiment(
     let given = data.get();
     let options = search.options(given, None)?;
     let (below, rivals) = (known(&given.library, &below)?, known(&given.library, &rivals)?);
-    let work = |_: &AtomicBool| {
+    let work = |_: Until<'_>| {
         let family = family(given, &options)?;
         if family.is_beside() {
             return Err(bad_input(

@@ -124,8 +124,6 @@ impl Found {
     fn model(&self, rung: usize) -> PyResult<String> {
         let found = self.discovery.ladder.get(rung);
         let rung: &Rung = found.ok_or_else(|| bad_input(format!("there is no rung {rung}")))?;
-        let fitted = model_of(&self.family, rung).map_err(bad_input)?;
-        let model = self.family.model(&fitted).map_err(bad_input)?;
-        model.with_known(self.family.known().clone()).to_json().map_err(bad_input)
+        self.family.plant(rung).map_err(bad_input)?.to_json().map_err(bad_input)
     }
 }

@@ -11,7 +11,7 @@ use std::ops::Range;
 use crate::effects::{
     Effect, Leg, Motion, Onset, ParameterRole, Parameters, Shown, Slot, Smooth, broadcast,
 };
-use crate::model::{MASS, Model, Term, address};
+use crate::model::{MASS, Model, ModelEffect, address};
 use crate::simd::sign;
 
 mod memory;
@@ -337,7 +337,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Takes away what an attached body would be if it were fixed to the mass: the given force has that already.
-    fn release(&mut self, term: &Term) {
+    fn release(&mut self, term: &ModelEffect) {
         let about = term.effect().about();
         let value = |name: &str| about.parameter(name).map_or(0.0, |k| term.values()[k]);
         let (mass, level, damping) = (value("m_L"), value("F_L"), value("d_L"));
@@ -350,7 +350,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Force of a term's element along the motion.
-    fn element(&self, term: &Term, level: &[f64], breakaway: &[f64]) -> Vec<f64> {
+    fn element(&self, term: &ModelEffect, level: &[f64], breakaway: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; self.motion.len()];
         let Some(element) = term.effect().element() else { return force };
         let mut state = vec![0.0; element.states()];
@@ -397,7 +397,7 @@ impl<'a> Walk<'a> {
         segment.clone().map(step).collect()
     }
 
-    fn smooth_force(&self, terms: &[Term]) -> Vec<f64> {
+    fn smooth_force(&self, terms: &[ModelEffect]) -> Vec<f64> {
         let mut damping = [0.0; BLOCK];
         self.sum(terms, Slot::SmoothForce, |effect, p, m, force| {
             let damping = &mut damping[..force.len()];
@@ -405,7 +405,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    fn friction_level(&self, terms: &[Term]) -> Vec<f64> {
+    fn friction_level(&self, terms: &[ModelEffect]) -> Vec<f64> {
         let mut level = self.sum(terms, Slot::FrictionLevel, |effect, p, m, level| {
             effect.friction_level(p, m, level);
         });
@@ -420,7 +420,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Friction level at rest, where the contact wants it.
-    fn breakaway(&self, terms: &[Term], level: &[f64]) -> Vec<f64> {
+    fn breakaway(&self, terms: &[ModelEffect], level: &[f64]) -> Vec<f64> {
         let mut elements = terms.iter().filter_map(|term| term.effect().element());
         if !elements.any(crate::effects::Element::needs_breakaway) {
             return level.to_vec();
@@ -436,7 +436,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Column of amplitude `k` of `term`.
-    fn column(&self, term: &Term, k: usize) -> Vec<f64> {
+    fn column(&self, term: &ModelEffect, k: usize) -> Vec<f64> {
         let unit = &[term.with_unit_amplitude(k)];
         let mut column = self.smooth_force(unit);
         // Not `friction_level`: a column may be negative, only the sum of all is cut off.
@@ -454,7 +454,7 @@ impl<'a> Walk<'a> {
     /// Sums a hook over all terms that act on `slot`, block by block.
     fn sum(
         &self,
-        terms: &[Term],
+        terms: &[ModelEffect],
         slot: Slot,
         mut hook: impl FnMut(&dyn Effect, Parameters<'_>, &Motion<'_>, &mut [f64]),
     ) -> Vec<f64> {

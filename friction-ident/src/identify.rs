@@ -5,14 +5,12 @@
 //! recording ([`Horizon::FreeRun`]) or over short windows with fitted starts ([`Horizon::Windows`]), or
 //! under a known controller that follows the recorded reference ([`Horizon::ClosedLoop`]).
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-
 use aep_core::{
     Batch, Budget, ConfigError, Domain, Driver, Method, Outcome, Problem, RunError, Scale,
     Start as SearchStart,
 };
-use missing_physics::{Recording, RecordingError};
+use missing_physics::fit::Until;
+use missing_physics::{DiscoverError, Recording, RecordingError};
 use rayon::prelude::*;
 
 use crate::closed_loop::Pd;
@@ -124,6 +122,9 @@ pub enum IdentifyError {
     /// A channel is missing.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// An effect that the comparison of forces, where the search begins, does not have.
+    #[error(transparent)]
+    Term(#[from] DiscoverError),
     /// A free parameter is not one of the model.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -151,8 +152,7 @@ pub struct Identification<'a> {
     free: Vec<Free>,
     model: Model,
     comparison: Comparison<'a>,
-    stop: Option<&'a AtomicBool>,
-    until: Option<Instant>,
+    until: Until<'a>,
 }
 
 enum Comparison<'a> {
@@ -197,27 +197,18 @@ impl<'a> Identification<'a> {
             }
         };
         let (values, free, model) = (model.values(), free.to_vec(), model.clone());
-        Ok(Self { domain, values, places, free, model, comparison, stop: None, until: None })
+        Ok(Self { domain, values, places, free, model, comparison, until: Until::default() })
     }
 
-    /// The same, ended early once `flag` is set: what was found is kept.
+    /// The same, ended early: what was found is kept.
     #[must_use]
-    pub fn with_stop_flag(mut self, flag: &'a AtomicBool) -> Self {
-        self.stop = Some(flag);
-        self
-    }
-
-    /// The same, ended early `limit` from now: what was found is kept.
-    #[must_use]
-    pub fn with_time_limit(mut self, limit: Duration) -> Self {
-        self.until = Instant::now().checked_add(limit);
-        self
+    pub fn until(self, until: Until<'a>) -> Self {
+        Self { until, ..self }
     }
 
     /// Whether it was told to end early.
     pub fn is_stopped(&self) -> bool {
-        self.stop.is_some_and(|flag| flag.load(Ordering::Relaxed))
-            || self.until.is_some_and(|until| Instant::now() >= until)
+        self.until.is_over()
     }
 
     /// The model with the free parameters at `x`.
@@ -327,12 +318,9 @@ impl<'a> Identification<'a> {
         let initial: Vec<Vec<f64>> = initial.iter().map(within).collect();
         let start = SearchStart::new(&self.domain, seed).with_initial(&initial);
         let mut algorithm = method.start(&start).map_err(RunError::from)?;
-        let left = self.until.map(|until| until.saturating_duration_since(Instant::now()));
-        let budget = left.into_iter().fold(budget, Budget::with_time);
-        let mut driver = Driver::new(budget).in_parallel();
-        if let Some(flag) = self.stop {
-            driver = driver.with_stop_flag(flag);
-        }
+        let budget = self.until.left().into_iter().fold(budget, Budget::with_time);
+        let driver = Driver::new(budget).in_parallel();
+        let mut driver = self.until.stop.into_iter().fold(driver, Driver::with_stop_flag);
         Ok(driver.run(&mut *algorithm, self)?)
     }
 }

@@ -74,12 +74,12 @@ pub enum ModelError {
 
 /// An effect with the values of its parameters, in the order of its table.
 #[derive(Clone)]
-pub struct Term {
+pub struct ModelEffect {
     effect: &'static dyn Effect,
     values: Vec<f64>,
 }
 
-impl Term {
+impl ModelEffect {
     /// The effect.
     pub fn effect(&self) -> &'static dyn Effect {
         self.effect
@@ -107,13 +107,13 @@ impl Term {
     }
 }
 
-impl std::fmt::Debug for Term {
+impl std::fmt::Debug for ModelEffect {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_tuple(self.name()).field(&self.values).finish()
     }
 }
 
-impl PartialEq for Term {
+impl PartialEq for ModelEffect {
     fn eq(&self, other: &Self) -> bool {
         self.name() == other.name() && self.values == other.values
     }
@@ -127,7 +127,7 @@ pub struct Model {
     mass: f64,
     /// For a model beside a given force.
     timing: Option<Timing>,
-    terms: Vec<Term>,
+    terms: Vec<ModelEffect>,
     known: Known,
 }
 
@@ -230,7 +230,7 @@ impl Model {
         self.check_place(effect)?;
         let typical = |parameter: &Parameter| parameter.typical(self.axis);
         let values = effect.about().parameters.iter().map(typical).collect();
-        self.terms.push(Term { effect, values });
+        self.terms.push(ModelEffect { effect, values });
         Ok(self)
     }
 
@@ -274,18 +274,18 @@ impl Model {
     }
 
     /// The effects with their values.
-    pub fn terms(&self) -> &[Term] {
+    pub fn terms(&self) -> &[ModelEffect] {
         &self.terms
     }
 
     /// The term of the effect called `name`.
-    pub fn term(&self, name: &str) -> Option<&Term> {
+    pub fn term(&self, name: &str) -> Option<&ModelEffect> {
         self.terms.iter().find(|term| term.name() == name)
     }
 
     /// Names of the effects.
     pub fn effects(&self) -> Vec<&'static str> {
-        self.terms.iter().map(Term::name).collect()
+        self.terms.iter().map(ModelEffect::name).collect()
     }
 
     /// Addresses of all parameters, the mass first (beside a given force: the shift).

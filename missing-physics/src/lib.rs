@@ -11,7 +11,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | [`discover`], [`suggest`], [`confirm`] | the ways in: search, look once, try on another recording |
+//! | [`discover`], [`suggest`], [`confirm`], [`identify`], [`extend`] | the ways in: search, look once, try on another recording, fit a given model |
 //! | [`ahead`] | what decides, from errors one sample ahead: fit, compare, screen, search sets, tell |
 //! | `task` | what is asked: [`Settings`], [`Thresholds`], [`Event`]s for an [`Observer`] |
 //! | [`diagnosis`] | where a model fails and what its residual says: shown to people, decides nothing |
@@ -27,6 +27,7 @@ pub mod diagnosis;
 mod discover;
 pub mod family;
 pub mod fit;
+mod identify;
 pub mod measurement;
 mod predicted;
 pub mod report;
@@ -39,6 +40,7 @@ pub use family::{
     ComparedQuantity, Coordinate, Fitted, FnFamily, Given, ModelFamily, Regime, Role, Term,
     TermParameter,
 };
+pub use identify::{Extended, extend, identify};
 pub use measurement::{Channel, Hold, Recording, RecordingError};
 pub use predicted::prediction_fit;
 pub use report::Discovery;

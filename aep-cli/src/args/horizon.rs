@@ -74,6 +74,9 @@ impl TimeArgs {
                 )));
             }
         }
+        if self.population == 0 {
+            return Err(Failure::bad_input("--population must be a number of individuals above 0"));
+        }
         let step = move |sampling: f64| max_step.unwrap_or(sampling);
         let horizon: Box<dyn Fn(f64) -> Horizon> = match compared {
             Compared::Force | Compared::Windows => Box::new(move |sampling| {

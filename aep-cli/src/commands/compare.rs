@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use friction_ident::{Known, Model};
-use friction_ident::family::{Decides, FrictionFamily};
-use missing_physics::{Fitted, Thresholds, diagnosis};
+use friction_ident::family::{Decides, GivenModels};
+use missing_physics::{Fitted, Thresholds};
 use missing_physics::fit::Fit;
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
@@ -16,7 +16,6 @@ use crate::failure::Failure;
 use crate::output::{self, heading};
 use crate::report::{Kind, Report};
 use crate::steps;
-use crate::stop::Watch;
 use crate::{outputs, series};
 
 /// Compare a model with a measurement: errors in several views and where it fails
@@ -69,28 +68,23 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         args.model.iter().map(|path| steps::read_model(path)).collect::<Result<_, _>>()?
     };
     let family = steps::family(&loaded.recording, args.bandwidth, &Known::default())?;
-    let fits: Vec<Fit> =
-        models.iter().map(|model| steps::as_given(&family, model)).collect::<Result<_, _>>()?;
-    let Some(fit) = fits.first() else {
-        return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
-    };
-    let rung = diagnosis::rung(&family, fit, &[]);
-    let effects = rung.effects.join(" + ");
-    let mut discovery = diagnosis::comparison(&family, (fit, fit), vec![rung], args.seed, &|| watch.is_over());
     let paths = if args.model.is_empty() {
         vec![PathBuf::from("model_force")]
     } else {
         args.model.clone()
     };
-    let (views, mut notes) = side_by_side(&family, &paths, &fits, watch)?;
-    discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
-    let warnings = output::warnings(&views, &notes);
-    let between = diagnosis::views::disagreements(&views);
-    notes.splice(0..0, between.iter().map(aep_studio::words::disagreement));
-    notes.append(&mut discovery.notes);
-    let stopped = watch.is_over();
-    discovery.stopped |= stopped;
-    discovery.notes = notes;
+    let fit = |(path, model): (&PathBuf, &Model)| Ok((name(path), family.as_given(model)?));
+    let fits: Vec<(String, Fit)> =
+        paths.iter().zip(&models).map(fit).collect::<Result<_, Failure>>()?;
+    let Some(compared) = family.compared(&fits, args.seed, watch.until())? else {
+        return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
+    };
+    let GivenModels { mut discovery, models: views, between, missing } = compared;
+    let (stopped, fit) = (discovery.stopped, &fits[0].1);
+    let effects = discovery.ladder[0].effects.join(" + ");
+    let warnings = output::warnings(&between, &views, &missing);
+    let between = between.iter().map(aep_studio::words::disagreement);
+    discovery.notes = between.chain(missing).collect();
     let data = check(&loaded.recording);
     let report = Report {
         kind: Kind::Comparison,
@@ -104,10 +98,10 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     };
     let mut files = report.save(&args.results)?;
     if let Some(path) = args.series.path() {
-        let named = |(k, fit): (usize, &Fit)| {
-            let name = name(&paths[k]);
-            let again = paths[..k].iter().any(|path| self::name(path) == name);
-            (if again { format!("{name}_{}", k + 1) } else { name }, fit.model.clone())
+        let named = |(k, (name, fit)): (usize, &(String, Fit))| {
+            let again = fits[..k].iter().any(|(other, _)| other == name);
+            let name = if again { format!("{name}_{}", k + 1) } else { name.clone() };
+            (name, fit.model.clone())
         };
         let models: Vec<(String, Fitted)> = fits.iter().enumerate().map(named).collect();
         files += &series::save(path, &family, &models, Decides::Force)?;
@@ -135,33 +129,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     watch.end()
 }
 
-/// The name of a model's file with its views.
-type Named = (String, Vec<View>);
-
-/// The views of every model, and why some are missing.
-fn side_by_side(
-    family: &FrictionFamily,
-    paths: &[PathBuf],
-    fits: &[Fit],
-    watch: Watch,
-) -> Result<(Vec<Named>, Vec<String>), Failure> {
-    let (mut views, mut notes) = (Vec::new(), Vec::new());
-    for (path, fit) in paths.iter().zip(fits) {
-        if watch.is_over() {
-            break;
-        }
-        let all = family.side_by_side(&fit.model)?;
-        views.push((name(path), all.views));
-        notes.extend(all.notes.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());
-    }
-    Ok((views, notes))
-}
-
 fn name(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }
 
-fn in_json(paths: &[PathBuf], views: &[Named]) -> serde_json::Value {
+fn in_json(paths: &[PathBuf], views: &[(String, Vec<View>)]) -> serde_json::Value {
     let models = paths
         .iter()
         .zip(views)

@@ -168,7 +168,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if let Some(count) = args.surrogates.filter(|_| go_on)
         && let Some(last) = discovery.ladder.last()
     {
-        let model = steps::model(&family, last)?;
+        let model = family.plant(last)?;
         let options = steps::options(args.bandwidth, &args.known.known()?);
         let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
@@ -231,7 +231,7 @@ fn save_model(
     let Some(last) = discovery.ladder.last() else {
         return Ok(String::new());
     };
-    let model = steps::model(family, last)?;
+    let model = family.plant(last)?;
     output::save(path, &(model.to_json()? + "\n"))?;
     Ok(written("model", path))
 }

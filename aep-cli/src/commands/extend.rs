@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use friction_ident::family::Decides;
-use missing_physics::{Thresholds, diagnosis};
+use missing_physics::Thresholds;
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
 
@@ -67,8 +67,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let loaded = args.data.read()?;
     let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;
     let added = known(&args.add.to_lowercase())?;
-    let mut effects: Vec<String> = model.effects().iter().map(|name| (*name).to_owned()).collect();
-    if effects.contains(&added) {
+    if model.effects().contains(&added.as_str()) {
         let failure = Failure::bad_input(format!("the model has '{added}' already"));
         let failure = match &args.model {
             Some(path) => failure.in_file(path),
@@ -76,22 +75,16 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         };
         return Err(failure.with_hint("'aep suggest' tells which other effect would help"));
     }
-    effects.push(added.clone());
     let quiet = global.quiet || args.results.own_stdout();
     let progress = Progress::new(quiet);
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?.or(model.known()))?;
-    let before = steps::as_given(&family, &model)?;
+    let before = family.as_given(&model)?;
     progress.say(format!("refitting with {added}"));
-    let method = steps::method("aep")?;
-    let (after, _) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
-    let rungs = vec![
-        diagnosis::rung(&family, &before, &[]),
-        diagnosis::rung(&family, &after, std::slice::from_ref(&added)),
-    ];
-    let last = rungs[1].clone();
-    let extended = steps::model(&family, &last)?;
-    let discovery = diagnosis::comparison(&family, (&before, &after), rungs, args.seed, &|| watch.is_over());
+    let extended = missing_physics::extend(&family, &before, &added, args.seed, watch.until())?;
+    let (after, discovery) = (extended.fit, extended.comparison);
+    let last = discovery.ladder[1].clone();
+    let extended = family.plant(&last)?;
     drop(progress);
     let data = check(&loaded.recording);
     let models = [before.model.clone(), after.model.clone()];

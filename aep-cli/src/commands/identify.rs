@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use aep_core::Budget;
 use clap::builder::PossibleValuesParser;
 use friction_ident::family::{Decides, FrictionFamily};
+use missing_physics::statistics::autocorrelation::interval;
 use missing_physics::{Recording, Thresholds, diagnosis};
 use missing_physics::measurement::check::check;
 
@@ -66,35 +68,36 @@ fn in_time(
     (progress, quiet): (Progress, bool),
     watch: Watch,
 ) -> Result<(), Failure> {
-    let found = steps::identify_in_time(
+    let task = args.time.task(args.horizon)?;
+    let method = steps::method(&args.algorithm, task.population)?;
+    let found = family.identify_in_time(
         recording,
-        family,
         effects,
-        &args.time.task(args.horizon)?,
-        (&args.algorithm, args.seed),
-        watch,
+        (task.horizon)(interval(recording.time())),
+        (&*method, &Budget::generations(task.generations), args.seed),
+        watch.until(),
     )?;
     drop(progress);
     let mut files = String::new();
     if let Some(path) = &args.results.json {
-        let json = serde_json::to_value(&found.found)
+        let json = serde_json::to_value(&found)
             .map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;
         output::save_json(path, &json)?;
         files += &written("results", path);
     }
     if let Some(path) = &args.output {
-        output::save(path, &(found.found.model.to_json()? + "\n"))?;
+        output::save(path, &(found.model.to_json()? + "\n"))?;
         files += &written("model", path);
     }
     if let Some(path) = args.series.path() {
-        let models = [("model".to_owned(), family.fitted(&found.found.model)?)];
+        let models = [("model".to_owned(), family.fitted(&found.model)?)];
         files += &series::save(path, family, &models, Decides::Force)?;
     }
     if quiet {
         return watch.end();
     }
     let title = format!("{} by simulation, {}", effects.join(" + "), args.horizon.name());
-    output::print(&(heading(&title) + &found.text() + &files))?;
+    output::print(&(heading(&title) + &output::simulated(&found) + &files))?;
     watch.end()
 }
 
@@ -123,14 +126,15 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
     progress.say(format!("identifying {}", effects.join(" + ")));
-    let method = steps::method(&args.algorithm)?;
+    let method = steps::method(&args.algorithm, 0)?;
     if args.horizon != Compared::Force {
         steps::needs_plant(&family)?;
         return in_time(args, &loaded.recording, &family, &effects, (progress, quiet), watch);
     }
-    let (fit, evaluations) = steps::identify(&family, &effects, (&*method, args.seed), watch)?;
+    let found = missing_physics::identify(&family, &effects, (&*method, args.seed), watch.until())?;
+    let (fit, evaluations) = (found.fit, found.evaluations);
     let rung = diagnosis::rung(&family, &fit, &[]);
-    let model = steps::model(&family, &rung)?;
+    let model = family.plant(&rung)?;
     let discovery = diagnosis::comparison(&family, (&fit, &fit), vec![rung.clone()], args.seed, &|| watch.is_over());
     let friction = family.friction(&fit.model, Decides::FittedForce);
     drop(progress);

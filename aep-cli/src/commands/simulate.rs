@@ -67,11 +67,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
 }
 
 fn check_axis(model: &Model, loaded: &Loaded) -> Result<(), Failure> {
-    let position = loaded.recording.channel("position");
-    let rotary = position.is_some_and(|channel| channel.unit == "rad");
-    if rotary == (model.axis() == Axis::Rotary) {
-        let force = loaded.recording.channel("force");
-        return steps::same_effort(model, Effort::of(force.map_or("", |channel| &channel.unit)));
-    }
-    Err(steps::other_axis())
+    let unit = |name: &str| {
+        loaded.recording.channel(name).map_or("", |channel| channel.unit.as_str())
+    };
+    let axis = if unit("position") == "rad" { Axis::Rotary } else { Axis::Linear };
+    Ok(model.is_of(axis, Effort::of(unit("force")))?)
 }

@@ -74,7 +74,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?.or(model.known()))?;
-    steps::same_axis(&family, &model)?;
+    family.belongs(&model)?;
     if args.experiment.is_some() {
         steps::needs_plant(&family)?;
     }

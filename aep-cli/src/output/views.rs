@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use aep_studio::words;
 use missing_physics::measurement::quantity::{percent, quantity};
-use missing_physics::report::View;
+use missing_physics::report::{Disagreement, View};
 
 use super::style::dim;
 use super::table::{Align, Table};
@@ -63,8 +63,11 @@ fn numbers(view: &View) -> [String; 6] {
 }
 
 /// What the user should know about the views: warnings of each, each once, and where they disagree.
-pub fn warnings(models: &[(String, Vec<View>)], notes: &[String]) -> String {
-    let between = missing_physics::diagnosis::views::disagreements(models);
+pub fn warnings(
+    between: &[Disagreement],
+    models: &[(String, Vec<View>)],
+    missing: &[String],
+) -> String {
     let mut said: Vec<String> = between.iter().map(words::disagreement).collect();
     let mut warned: Vec<&str> = Vec::new();
     for view in models.iter().flat_map(|(_, views)| views) {
@@ -75,7 +78,7 @@ pub fn warnings(models: &[(String, Vec<View>)], notes: &[String]) -> String {
         warned.push(&view.name);
         said.extend(view.warnings.iter().map(|text| format!("{}: {text}", view.name)));
     }
-    said.extend(notes.iter().cloned());
+    said.extend(missing.iter().cloned());
     let mut text = String::new();
     for line in &said {
         // Writing to a string cannot fail.

@@ -149,7 +149,7 @@ impl From {
         drop(project);
         let entry = entry.ok_or_else(|| Failure::bad_input(format!("there is no model {id}")))?;
         let family = session.family(&entry.fixed)?;
-        steps::same_axis(&family, &model)?;
+        family.belongs(&model)?;
         Ok(Self { entry, model, family })
     }
 
@@ -325,7 +325,7 @@ fn discovery(
     let made = found.ladder.iter().skip(1).map(|rung| {
         let name = format!("+ {}", rung.added.join(" + "));
         let entry = Entry { by: By::Discovered, name, rung: rung.clone(), ..from.entry.clone() };
-        Ok((entry, steps::model(family, rung)?, None))
+        Ok((entry, family.plant(rung)?, None))
     });
     let made = made.collect::<Result<Vec<_>, Failure>>()?;
     let said = Said {

@@ -2,7 +2,7 @@
 
 use crate::closed_loop::{Controller, Sample};
 use crate::effects::{Effect, Motion, Parameters, Slot, Smooth};
-use crate::model::{Model, Term};
+use crate::model::{Model, ModelEffect};
 use crate::simd::sign;
 
 use super::contact::Contact;
@@ -70,7 +70,7 @@ pub struct LeftOut {
 #[derive(Clone, Debug)]
 pub struct Compensator {
     settings: Settings,
-    terms: Vec<Term>,
+    terms: Vec<ModelEffect>,
     left_out: Vec<LeftOut>,
     state: MotionState,
     last_position: Option<f64>,
@@ -97,7 +97,7 @@ impl Compensator {
                 Some(why) => left_out.push(LeftOut { effect: term.name(), why }),
             }
         }
-        let forces = |term: &Term| {
+        let forces = |term: &ModelEffect| {
             let about = term.effect().about();
             about.acts_on(Slot::SmoothForce) || about.acts_on(Slot::FrictionLevel)
         };
@@ -127,7 +127,7 @@ impl Compensator {
     }
 
     /// The terms of the model that it acts on, besides the contact.
-    pub fn terms(&self) -> &[Term] {
+    pub fn terms(&self) -> &[ModelEffect] {
         &self.terms
     }
 
@@ -244,10 +244,10 @@ impl Place {
 /// Why an effect has no place in a force that is added to the command; none where it has.
 fn obstacle(effect: &dyn Effect) -> Option<&'static str> {
     let about = effect.about();
-    let known = [memory::DELAYED, memory::LAGGED, memory::BOND];
+    let is_known = || effect.memory().is_some_and(|memory| memory.sampled().is_some());
     let of_slot = |slot: &Slot| match slot {
         Slot::SmoothForce | Slot::FrictionLevel => None,
-        Slot::Memory if known.contains(&about.name) => None,
+        Slot::Memory if is_known() => None,
         Slot::Memory => Some("a memory that the compensator does not know"),
         Slot::Contact => Some("only the friction while it slides is compensated"),
         Slot::Drive => Some("it acts on the command as a whole"),

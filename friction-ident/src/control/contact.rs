@@ -1,25 +1,25 @@
 //! The elastic contact of a model, taken along the desired path.
 
 use crate::effects::{Onset, Parameters, Response, Step};
-use crate::model::Term;
+use crate::model::ModelEffect;
 
 /// A contact at rest that is bent by what the desired path asks for.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    term: Term,
+    term: ModelEffect,
     state: Vec<f64>,
     last: Option<f64>,
 }
 
 impl Contact {
     /// The contact of a term; none where the term has none.
-    pub fn new(term: &Term) -> Option<Self> {
+    pub fn new(term: &ModelEffect) -> Option<Self> {
         let element = term.effect().element()?;
         Some(Self { term: term.clone(), state: vec![0.0; element.states()], last: None })
     }
 
     /// Its term.
-    pub fn term(&self) -> &Term {
+    pub fn term(&self) -> &ModelEffect {
         &self.term
     }
 

@@ -1,18 +1,19 @@
 //! What the friction level remembers: the velocity a while ago, and how much of the static hump the
 //! last slide has left.
 
-use crate::effects::Parameters;
-use crate::model::Term;
+use crate::effects::{Parameters, Sampled};
+use crate::model::ModelEffect;
 
 use super::delay::Delay;
 use super::state::MotionState;
 
-/// Effect whose level follows the velocity a while ago.
-pub(super) const DELAYED: &str = "frictional-memory";
-/// Effect whose level follows the velocity through a first-order lag.
-pub(super) const LAGGED: &str = "frictional-memory:lag";
-/// Effect whose static hump grows back at rest.
-pub(super) const BOND: &str = "rising-static-friction:bond";
+/// Time of the first memory of this kind among `terms`, s.
+fn time_of(kind: Sampled, terms: &[ModelEffect]) -> Option<f64> {
+    let is_of_kind = |term: &&ModelEffect| {
+        term.effect().memory().is_some_and(|memory| memory.sampled() == Some(kind))
+    };
+    terms.iter().find(is_of_kind).map(|term| term.values()[0])
+}
 
 /// The velocity that the friction level follows.
 #[derive(Clone, Debug)]
@@ -24,11 +25,10 @@ pub(super) struct Follower {
 
 impl Follower {
     /// As the memories among `terms` say, sampled every `sample_time` s, from rest.
-    pub fn new(terms: &[Term], sample_time: f64) -> Self {
-        let time = |name| terms.iter().find(|t| t.name() == name).map(|t| t.values()[0]);
+    pub fn new(terms: &[ModelEffect], sample_time: f64) -> Self {
         Self {
-            delay: time(DELAYED).map(|delay| Delay::new(delay / sample_time)),
-            lag: time(LAGGED).map(|lag| ((-sample_time / lag).exp(), 0.0)),
+            delay: time_of(Sampled::Delay, terms).map(|delay| Delay::new(delay / sample_time)),
+            lag: time_of(Sampled::Lag, terms).map(|lag| ((-sample_time / lag).exp(), 0.0)),
         }
     }
 
@@ -67,9 +67,9 @@ pub(super) struct Bond {
 
 impl Bond {
     /// The memory of the hump among `terms`, after a long rest.
-    pub fn new(terms: &[Term]) -> Option<Self> {
-        let term = terms.iter().find(|term| term.name() == BOND)?;
-        Some(Self { gamma: term.values()[0], left: 1.0, formed: 1.0, slipped: false })
+    pub fn new(terms: &[ModelEffect]) -> Option<Self> {
+        let gamma = time_of(Sampled::Bond, terms)?;
+        Some(Self { gamma, left: 1.0, formed: 1.0, slipped: false })
     }
 
     /// Dwell after which half has grown, s.
@@ -92,7 +92,7 @@ impl Bond {
 }
 
 /// Share of the static hump that is left at the velocity that the level follows.
-pub(super) fn hump(terms: &[Term], level_velocity: f64) -> f64 {
+pub(super) fn hump(terms: &[ModelEffect], level_velocity: f64) -> f64 {
     let mut share = [1.0];
     for term in terms {
         term.effect().hump(Parameters::new(term.values(), 1), &[level_velocity], &mut share);
@@ -108,7 +108,10 @@ mod tests {
 
     #[test]
     fn the_hump_grows_back_from_what_the_slide_left() {
-        let model = Model::new(Axis::Linear, 1.0).unwrap().with(BOND, &[("gamma", 0.01)]).unwrap();
+        let model = Model::new(Axis::Linear, 1.0)
+            .unwrap()
+            .with("rising-static-friction:bond", &[("gamma", 0.01)])
+            .unwrap();
         let mut bond = Bond::new(model.terms()).unwrap();
         let mut state = MotionState::new(1e-3, 5e-3);
         let mut seen = Vec::new();
@@ -125,8 +128,10 @@ mod tests {
 
     #[test]
     fn the_lag_follows_a_step_exponentially() {
-        let model =
-            Model::new(Axis::Linear, 1.0).unwrap().with(LAGGED, &[("tau_L", 0.02)]).unwrap();
+        let model = Model::new(Axis::Linear, 1.0)
+            .unwrap()
+            .with("frictional-memory:lag", &[("tau_L", 0.02)])
+            .unwrap();
         let mut follower = Follower::new(model.terms(), 5e-3);
         for k in 1..20 {
             let exact = 1.0 - (-f64::from(k) * 0.25).exp();

@@ -2,7 +2,7 @@
 
 use super::{MeasuredMotion, Walk};
 use crate::effects::{Memory, Parameters, Past, Recalled, Slot, Taken};
-use crate::model::Term;
+use crate::model::ModelEffect;
 
 /// Time at rest so far at every sample; while the axis slides, the length of its last rest.
 pub(super) fn dwell(motion: &MeasuredMotion<'_>) -> Vec<f64> {
@@ -23,7 +23,7 @@ pub(super) fn dwell(motion: &MeasuredMotion<'_>) -> Vec<f64> {
 
 impl Walk<'_> {
     /// Lets the memories of `terms` say what the level sees.
-    pub(super) fn recall(&mut self, terms: &[Term]) {
+    pub(super) fn recall(&mut self, terms: &[ModelEffect]) {
         for term in terms.iter().filter(|term| term.effect().about().acts_on(Slot::Memory)) {
             if let Some(memory) = term.effect().memory() {
                 self.remembered.resize(self.motion.len(), 0.0);
@@ -32,7 +32,7 @@ impl Walk<'_> {
         }
     }
 
-    fn recall_one(&mut self, term: &Term, memory: &dyn Memory, terms: &[Term]) {
+    fn recall_one(&mut self, term: &ModelEffect, memory: &dyn Memory, terms: &[ModelEffect]) {
         let p = Parameters::new(term.values(), 1);
         let mut level_velocity = self.level_velocity.to_vec();
         for segment in self.motion.segments.clone().iter().filter(|s| !s.is_empty()) {
@@ -58,7 +58,7 @@ impl Walk<'_> {
     }
 
     /// Level that the memory of `term` adds.
-    pub(super) fn remembered_by(&self, term: &Term) -> Vec<f64> {
+    pub(super) fn remembered_by(&self, term: &ModelEffect) -> Vec<f64> {
         let mut walk = Walk {
             beside: false,
             motion: self.motion,
@@ -104,7 +104,7 @@ impl Walk<'_> {
 }
 
 /// Share of the static hump that is left at a level velocity.
-fn hump(terms: &[Term], level_velocity: [f64; 1]) -> [f64; 1] {
+fn hump(terms: &[ModelEffect], level_velocity: [f64; 1]) -> [f64; 1] {
     let mut share = [1.0];
     for term in terms {
         term.effect().hump(Parameters::new(term.values(), 1), &level_velocity, &mut share);

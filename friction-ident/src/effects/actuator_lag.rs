@@ -1,7 +1,8 @@
 //! The current loop: the force follows its command like a first-order lag.
 
-use super::{About, Advance, Apart, Drive, Effect, Parameter, Parameters, Slot};
+use super::{About, Advance, Apart, Before, Begin, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
 use crate::signal::derivative;
 
 /// `tau F' + F = u`.
@@ -56,8 +57,27 @@ impl Effect for ActuatorLag {
         &ABOUT
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 1,
+            start: "{s0} = command;",
+            drive: "{
+    const double ratio = duration / {tau}, left = exp(-ratio), off = {s0} - force;
+    const double mean = ratio > 1e-8 ? (1.0 - left) / ratio : 1.0;
+    {s0} = force + off * left;
+    force = force + off * (isfinite(ratio) ? mean : 0.0);
+}",
+            ..CDynamics::NONE
+        })
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("actuator-lag:second-order")
+    }
+
+    /// Two equal lags in a row: damped just enough not to ring.
+    fn begins_flexible(&self, _before: &Before<'_>) -> Begin {
+        Begin::at([("zeta", 1.0)])
     }
 
     fn told_apart(&self) -> &'static [Apart] {
@@ -77,9 +97,38 @@ impl Effect for ActuatorLag {
     }
 }
 
+/// Helper functions in C.
+const SECOND_ORDER_IN_C: &str = include_str!("../export/c/second_order.c");
+
 impl Effect for SecondOrder {
     fn about(&self) -> &'static About {
         &SECOND_ORDER_ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 2,
+            helpers: &[SECOND_ORDER_IN_C],
+            start: "{s0} = command;\n{s1} = 0.0;",
+            drive: "{
+    const double t = duration / {tau};
+    if (!isfinite(t)) {
+        {s0} = force;
+        {s1} = 0.0;
+    } else {
+        const double off = {s0} - force, rate = {s1};
+        double even, odd, off_then, rate_then, mean;
+        lag_response({zeta}, t, &even, &odd);
+        off_then = (even + {zeta} * odd) * off + odd * rate;
+        rate_then = (even - {zeta} * odd) * rate - odd * off;
+        mean = t > 1e-5 ? (2.0 * {zeta} * (off - off_then) + rate - rate_then) / t : off + 0.5 * t * rate;
+        {s0} = force + off_then;
+        {s1} = rate_then;
+        force = force + mean;
+    }
+}",
+            ..CDynamics::NONE
+        })
     }
 
     /// Alone it would fit anything a little.

@@ -7,6 +7,8 @@ use super::{
     Taken,
 };
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::LIMITED;
 use crate::simd::sign;
 
 /// The load's share `F_L` of the friction is missing while the drive is inside the gap `b`.
@@ -38,6 +40,20 @@ static ABOUT: About = About {
 impl Effect for Backlash {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 1,
+            helpers: &[LIMITED],
+            start: "{s0} = 0.5 * sign(velocity);",
+            recall: "{
+    const double towards = m->direction == 0.0 ? sign(m->drive) : m->direction;
+    m->remembered -= {s0} * towards < 0.5 ? {F_L} : 0.0;
+}",
+            remember: "{s0} = limited({s0} + m->displacement / {b}, 0.5);",
+            ..CDynamics::NONE
+        })
     }
 
     fn forms(&self) -> &'static [&'static dyn Effect] {

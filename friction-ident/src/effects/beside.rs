@@ -96,6 +96,10 @@ impl Effect for Inertia {
         &INERTIA
     }
 
+    fn share_of_given(&self, values: &[f64], mass: f64) -> Option<f64> {
+        Some(values[0].abs() / mass)
+    }
+
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
         for ((force, dm), a) in out.force.iter_mut().zip(p.get(0)).zip(m.acceleration) {
             *force += dm * a;
@@ -109,7 +113,8 @@ impl Effect for ModelGain {
     }
 
     fn bound(&self, recording: &Recording) -> Option<&'static dyn Effect> {
-        Some(Tabled::keep(&GAIN, Signal::of(recording, MODEL_FORCE)?))
+        let signal = Signal::of(recording, MODEL_FORCE)?;
+        Some(Box::leak(Box::new(Tabled { about: &GAIN, signal, is_given: true })))
     }
 }
 
@@ -163,17 +168,23 @@ impl Effect for Sharpened {
 pub(super) struct Tabled {
     about: &'static About,
     signal: Signal,
+    /// Whether the signal is all that is given.
+    is_given: bool,
 }
 
 impl Tabled {
     pub(super) fn keep(about: &'static About, signal: Signal) -> &'static dyn Effect {
-        Box::leak(Box::new(Self { about, signal }))
+        Box::leak(Box::new(Self { about, signal, is_given: false }))
     }
 }
 
 impl Effect for Tabled {
     fn about(&self) -> &'static About {
         self.about
+    }
+
+    fn share_of_given(&self, values: &[f64], _mass: f64) -> Option<f64> {
+        self.is_given.then_some(values[0].abs())
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

@@ -1,5 +1,6 @@
 //! The encoder: an error within each period of its grating, or within each turn.
 
+use crate::effects::CDynamics;
 use std::f64::consts::TAU;
 
 use super::own::{Own, turned};
@@ -59,6 +60,16 @@ pub fn feigned(
 impl Effect for Encoder {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            shown: "{
+    const double a = 6.283185307179586 * (position / {p});
+    position += {a} * sin(a) + {b} * cos(a);
+}",
+            ..CDynamics::NONE
+        })
     }
 
     /// What the sensor shows is in that force already.

@@ -2,6 +2,7 @@
 
 mod friction;
 
+use crate::effects::CDynamics;
 use std::f64::consts::TAU;
 
 use super::{
@@ -53,9 +54,36 @@ static ABOUT: About = About {
     reference: "W. Leonhard, Control of Electrical Drives, Springer (two-mass system)",
 };
 
+/// Helper functions in C.
+const SWING_IN_C: &str = include_str!("../export/c/swing.c");
+
 impl Effect for FlexibleCoupling {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 2,
+            helpers: &[SWING_IN_C],
+            load: "{s0} = 0.0;\n{s1} = velocity;",
+            respond: "{
+    const double p[3] = {{m_L}, {f}, {zeta}};
+    double slope, mean;
+    m->elements += swing(p, m->left, m->displacement, {s0}, {s1}, &slope, &mean);
+    m->stiffness += slope;
+}",
+            commit: "{
+    const double p[3] = {{m_L}, {f}, {zeta}};
+    double slope, mean;
+    swing(p, m->taken, m->displacement, {s0}, {s1}, &slope, &mean);
+    {s0} += m->taken * mean - m->displacement;
+    {s1} += 2.0 * (mean - {s1});
+}",
+            iterations: 1,
+            attached: true,
+            ..CDynamics::NONE
+        })
     }
 
     /// A resonance is as narrow as its damping, so that the frequencies lie closer than other shapes.

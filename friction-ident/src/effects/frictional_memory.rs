@@ -4,6 +4,9 @@ use super::{
     About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::Sampled;
+use crate::effects::c_dynamics::PAST;
 
 /// The level sees `v(t - tau_L)` instead of `v(t)`.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +47,21 @@ impl Effect for FrictionalMemory {
         &ABOUT
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            helpers: &[PAST],
+            slow: "{tau_L}",
+            recall: "{
+    const double then = m->when - {tau_L};
+    const double newest = m->slow.time[m->slow.end - 1], last = m->slow.value[m->slow.end - 1];
+    m->level_velocity = then > newest
+        ? last + (then - newest) / (m->when - newest) * (m->predicted - last)
+        : past_at(&m->slow, then);
+}",
+            ..CDynamics::NONE
+        })
+    }
+
     /// It delays what a Stribeck hump does.
     fn companion(&self) -> Option<&'static str> {
         Some("stribeck")
@@ -63,6 +81,10 @@ impl Effect for FrictionalMemory {
 }
 
 impl Memory for FrictionalMemory {
+    fn sampled(&self) -> Option<Sampled> {
+        Some(Sampled::Delay)
+    }
+
     fn memory(&self, p: Parameters<'_>) -> f64 {
         p.get(0).iter().fold(0.0, |longest, delay| delay.max(longest))
     }
@@ -94,6 +116,19 @@ impl Effect for Lagged {
         &LAGGED_ABOUT
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 1,
+            start: "{s0} = velocity;",
+            recall: "m->level_velocity = {s0};",
+            remember: "if (m->taken > 0.0) {
+    const double mean = m->displacement / m->taken;
+    {s0} = mean + ({s0} - mean) * exp(-m->taken / {tau_L});
+}",
+            ..CDynamics::NONE
+        })
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw::NONE)
     }
@@ -104,6 +139,10 @@ impl Effect for Lagged {
 }
 
 impl Memory for Lagged {
+    fn sampled(&self) -> Option<Sampled> {
+        Some(Sampled::Lag)
+    }
+
     fn states(&self) -> usize {
         1
     }

@@ -2,6 +2,8 @@
 
 use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::PAST;
 
 /// `F(t) = u(t - T_d)`.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +25,25 @@ static ABOUT: About = About {
 impl Effect for InputDelay {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            helpers: &[PAST],
+            // A little more, so that a delay of 0 keeps its past as well.
+            input: "fmax(1e-6, {T_d})",
+            drive: "{
+    const double sum = m->input.value[m->input.end - 1] + duration * force;
+    if (!past_push(&m->input, end, sum)) {
+        return 0;
+    }
+    if (duration > 0.0) {
+        const double to = end - {T_d};
+        force = (past_at(&m->input, to) - past_at(&m->input, to - duration)) / duration;
+    }
+}",
+            ..CDynamics::NONE
+        })
     }
 
     fn drive(&self) -> Option<&dyn Drive> {

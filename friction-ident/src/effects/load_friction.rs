@@ -1,6 +1,6 @@
 //! Friction that grows with the transmitted load: gears, nuts, preloaded bearings.
 
-use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot};
+use super::{About, Before, Begin, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -74,6 +74,10 @@ impl Effect for LoadFriction {
 
     fn flexible_form(&self) -> Option<&'static str> {
         (self.0 != Load::Both).then_some("load-friction:both")
+    }
+
+    fn begins_flexible(&self, before: &Before<'_>) -> Begin {
+        Begin::at(["mu", "c"].map(|name| (name, (before.value)(name).unwrap_or(0.0))))
     }
 
     fn is_only_flexible(&self) -> bool {

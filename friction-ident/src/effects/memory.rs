@@ -30,9 +30,25 @@ pub trait Memory: Sync + Send {
     /// Takes a piece of motion into the state.
     fn remember(&self, _p: Parameters<'_>, _taken: &Taken<'_>, _state: &mut [f64]) {}
 
+    /// The same as the compensator keeps it, sample by sample; nothing where it does not know such a memory.
+    fn sampled(&self) -> Option<Sampled> {
+        None
+    }
+
     /// Follows an observer that moves the estimate of the position by `displacement`, m or rad: see
     /// [`super::Element::correct`].
     fn correct(&self, _p: Parameters<'_>, _displacement: &[f64], _state: &mut [f64]) {}
+}
+
+/// What a controller that samples keeps of a [`Memory`]; the first parameter of the effect is its time, s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sampled {
+    /// The level follows the velocity that long ago.
+    Delay,
+    /// The level follows the velocity through a first-order lag.
+    Lag,
+    /// The static hump grows back at rest, half of it in that time.
+    Bond,
 }
 
 /// What a [`Memory`] may change.

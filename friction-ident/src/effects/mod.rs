@@ -7,9 +7,11 @@
 mod about;
 mod apart;
 mod as_found;
+pub mod c_dynamics;
 mod c_law;
 mod drive;
 mod element;
+mod flexible;
 mod lanes;
 mod library;
 mod load;
@@ -17,6 +19,7 @@ mod memory;
 mod own;
 mod past;
 pub mod search;
+mod second_body;
 mod sensor;
 mod signal;
 
@@ -60,15 +63,18 @@ use crate::axis::Axis;
 pub use about::{About, Extent, Parameter, ParameterRole, Scale, Slot};
 pub use apart::Apart;
 pub use as_found::{AsFound, Refused};
+pub use c_dynamics::CDynamics;
 pub use c_law::CLaw;
 pub use drive::{Advance, Drive};
 pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
+pub use flexible::{Before, Begin};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
-pub use memory::{Memory, Recalled, Taken};
+pub use memory::{Memory, Recalled, Sampled, Taken};
 pub use own::Own;
 pub use past::Past;
 pub use search::{Periodic, Repeats, Trials};
+pub use second_body::{Along, SecondBody};
 pub use sensor::{Sensor, Shown};
 pub use signal::Signal;
 
@@ -199,6 +205,22 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// Where that form begins, if not at the values of this one.
+    fn begins_flexible(&self, _before: &Before<'_>) -> Begin {
+        Begin::default()
+    }
+
+    /// Where its fits begin, for a second body with friction of its own.
+    fn second_body(&self) -> Option<&'static SecondBody> {
+        None
+    }
+
+    /// Share of all that the given force holds, beside a force that another model gives, that it is with these values,
+    /// where the model's own mass is `mass`; nothing for what is no share of it.
+    fn share_of_given(&self, _values: &[f64], _mass: f64) -> Option<f64> {
+        None
+    }
+
     /// Whether it is only tried in the place of another form.
     fn is_only_flexible(&self) -> bool {
         false
@@ -221,6 +243,12 @@ pub trait Effect: Sync + Send {
 
     /// Its law in C, for an export; an effect that the compensator acts on needs one.
     fn c_law(&self) -> Option<CLaw> {
+        None
+    }
+
+    /// What it does in C beside its law, for the export of a plant: an effect with a state, or one that acts on the drive or
+    /// the sensor.
+    fn c_dynamics(&self) -> Option<CDynamics> {
         None
     }
 

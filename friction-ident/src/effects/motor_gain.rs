@@ -2,6 +2,7 @@
 
 use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
 
 /// `F = g u`.
 ///
@@ -22,6 +23,10 @@ static ABOUT: About = About {
 impl Effect for MotorGain {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics { drive: "force *= {g};", ..CDynamics::NONE })
     }
 
     fn is_determined(&self) -> bool {

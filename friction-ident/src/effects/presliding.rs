@@ -5,10 +5,12 @@ mod free;
 mod maxwell;
 
 use super::{
-    About, Apart, Balance, Correction, Effect, Element, Onset, Parameter, Parameters, Response,
-    Slot, Step,
+    About, Apart, Balance, Before, Begin, Correction, Effect, Element, Onset, Parameter,
+    Parameters, Response, Slot, Step,
 };
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::LIMITED;
 use crate::simd::{limited, vectorised};
 
 /// `clip(k_t z, +-level)`: linear elastic, ideally plastic (Jenkins element).
@@ -64,6 +66,56 @@ static STATIC_ABOUT: About = About {
     reference: "B. Armstrong-Helouvry et al., Automatica 30, 1994 (seven-parameter model)",
 };
 
+/// The free curve breaks away about as far as a contact of this stiffness does.
+fn as_far(before: &Before<'_>) -> Begin {
+    match (before.value)("k_t") {
+        Some(stiffness) => Begin::at([("d", 1.5 * before.level.unwrap_or(1.0) / stiffness)]),
+        None => Begin::default(),
+    }
+}
+
+/// Helper functions in C.
+const CONTACT_IN_C: &str = include_str!("../export/c/contact.c");
+
+/// An elastic contact that holds up to `$hold` (`level` or `breakaway`).
+macro_rules! contact {
+    ($hold:literal, $solve:literal, $breakaway:literal) => {
+        CDynamics {
+            states: 2,
+            helpers: &[LIMITED, CONTACT_IN_C],
+            load: "{s0} = level * used;\n{s1} = fabs(used) < 1.0 ? 0.0 : 1.0;",
+            respond: concat!(
+                "{
+    const double hold = m->",
+                $hold,
+                ", moved = m->displacement;
+    const double start = contact_at_start({s0}, {s1}, m->level, hold), trial = start + {k_t} * moved;
+    int breaks;
+    const double end = contact_at_end(start, trial, {s1}, m->level, hold, &breaks);
+    m->elements += contact_mean(start, trial, end, breaks, {s1}, m->level, hold);
+    m->stiffness += breaks && moved != 0.0 ? 0.0 : 0.5 * {k_t};
+}"
+            ),
+            commit: concat!(
+                "{
+    const double hold = m->",
+                $hold,
+                ";
+    const double start = contact_at_start({s0}, {s1}, m->level, hold), trial = start + {k_t} * m->displacement;
+    int breaks;
+    {s0} = contact_at_end(start, trial, {s1}, m->level, hold, &breaks);
+    {s1} = breaks ? 1.0 : 0.0;
+}"
+            ),
+            solve: $solve,
+            sliding: "{s1}",
+            iterations: 1,
+            breakaway: $breakaway,
+            ..CDynamics::NONE
+        }
+    };
+}
+
 impl Effect for Presliding {
     fn about(&self) -> &'static About {
         match self.breakaway {
@@ -72,8 +124,46 @@ impl Effect for Presliding {
         }
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(match self.breakaway {
+            Breakaway::Kinetic => contact!(
+            "level",
+            "{
+    const double r = m->left, level = m->level, start = limited({s0}, level);
+    const double bend = {k_t} * r, free = m->push - r * start, whole = m->inertia + 0.5 * bend * r;
+    const double trial = start * whole + bend * free;
+    const int breaks = fabs(trial) > level * whole;
+    const double slid = copysign(level, trial);
+    m->mean = breaks ? (m->push - 0.5 * r * (start + slid)) / m->inertia : free / whole;
+    {s0} = breaks ? slid : start + bend * m->mean;
+    {s1} = breaks ? 1.0 : 0.0;
+}",
+            false
+        ),
+            Breakaway::Static => contact!(
+            "breakaway",
+            "{
+    const double r = m->left, level = m->level, hold = m->breakaway;
+    const double start = contact_at_start({s0}, {s1}, level, hold), bend = {k_t} * r;
+    const double elastic = (m->push - r * start) / (m->inertia + 0.5 * bend * r), trial = start + bend * elastic;
+    int breaks;
+    const double end = contact_at_end(start, trial, {s1}, level, hold, &breaks);
+    const double broken = contact_mean(start, trial, end, breaks, {s1}, level, hold);
+    m->mean = breaks ? (m->push - r * broken) / m->inertia : elastic;
+    {s0} = end;
+    {s1} = breaks ? 1.0 : 0.0;
+}",
+            true
+        ),
+        })
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("presliding:free")
+    }
+
+    fn begins_flexible(&self, before: &Before<'_>) -> Begin {
+        as_far(before)
     }
 
     fn told_apart(&self) -> &'static [Apart] {

@@ -4,6 +4,8 @@
 use super::ripple::LEADS;
 use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::PAST;
 
 /// `level += F_r exp(-|distance since the reversal| / l)`.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,27 @@ static ABOUT: About = About {
 impl Effect for ReversalDecay {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 2,
+            helpers: &[PAST],
+            slow: "1e-9",
+            start: "{s0} = DBL_MAX;\n{s1} = sign(velocity);",
+            recall: "{
+    const double ahead = fmax(m->when - m->slow.time[m->slow.end - 1], 0.0) * fabs(m->predicted);
+    const double going = m->predicted == 0.0 ? m->drive : m->predicted;
+    const double since = going * {s1} < 0.0 ? ahead : {s0} + ahead;
+    m->remembered += {F_r} * exp(-since / {l});
+}",
+            remember: "if (m->sliding > 0.0 && m->displacement != 0.0) {
+    const double way = fabs(m->displacement);
+    {s0} = m->displacement * {s1} < 0.0 ? way : {s0} + way;
+    {s1} = sign(m->displacement);
+}",
+            ..CDynamics::NONE
+        })
     }
 
     /// It comes back with each turn of a screw.

@@ -4,6 +4,8 @@ use super::{
     About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::Sampled;
 use crate::simd::vectorised;
 
 /// An extra level that grows with the time at rest and fades with speed.
@@ -85,6 +87,22 @@ impl Effect for Bond {
         &BOND_ABOUT
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 3,
+            start: "{s0} = 1.0;\n{s1} = 1.0;\n{s2} = velocity != 0.0 ? 1.0 : 0.0;",
+            recall: "m->bond = {s2} > 0.0 ? {s1} : {s0} + (1.0 - {s0}) * m->dwell / (m->dwell + {gamma});",
+            remember: "{
+    const int was = {s2} > 0.0, is = m->sliding > 0.0;
+    const double grown = {s0} + (1.0 - {s0}) * m->dwell / (m->dwell + {gamma});
+    {s0} = was && !is ? {s1} * m->hump : {s0};
+    {s1} = was ? {s1} : grown;
+    {s2} = m->sliding;
+}",
+            ..CDynamics::NONE
+        })
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw::NONE)
     }
@@ -100,6 +118,10 @@ impl Effect for Bond {
 
 /// States: what the last slide left, the bond while sliding, 1 while sliding.
 impl Memory for Bond {
+    fn sampled(&self) -> Option<Sampled> {
+        Some(Sampled::Bond)
+    }
+
     fn states(&self) -> usize {
         3
     }

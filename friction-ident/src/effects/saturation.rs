@@ -2,6 +2,8 @@
 
 use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::LIMITED;
 use crate::simd::limited;
 
 /// `clip(u, +-u_max)`.
@@ -21,6 +23,14 @@ static ABOUT: About = About {
 impl Effect for Saturation {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            helpers: &[LIMITED],
+            drive: "force = limited(force, {u_max});",
+            ..CDynamics::NONE
+        })
     }
 
     fn drive(&self) -> Option<&dyn Drive> {

@@ -2,7 +2,7 @@
 
 mod free;
 
-use super::{About, Apart, CLaw, Effect, Motion, Parameter, Parameters, Slot};
+use super::{About, Apart, Before, Begin, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
 
@@ -83,6 +83,19 @@ impl Effect for Stribeck {
         Some("stribeck:free")
     }
 
+    /// At this hump, which ends at the top speed: Coulomb friction takes over what is left of it there.
+    fn begins_flexible(&self, before: &Before<'_>) -> Begin {
+        let value = |name: &str| (before.value)(name);
+        let height = value("dF").unwrap_or(0.0);
+        let (speed, exponent) = (value("v_s").unwrap_or(1e-3), value("delta").unwrap_or(1.0));
+        let law = |v: f64| height * self.0.of_ratio(v / speed, exponent);
+        let end = law(before.top_speed);
+        let knots = free::KNOT_SPEEDS.iter().enumerate();
+        let values =
+            knots.map(|(k, share)| (format!("c_{k}"), law(share * before.top_speed) - end));
+        Begin { values: values.collect(), level: end }
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(match self.0 {
             Form::Rational => CLaw {
@@ -151,11 +164,16 @@ impl Effect for Stribeck {
 impl Form {
     /// Share of the hump that is left in lane `i`.
     fn share(self, p: Parameters<'_>, velocity: &[f64], i: usize) -> f64 {
-        let u = velocity[i] / p.get(1)[i];
+        let exponent = if self == Self::Exponential { p.get(2)[i] } else { 1.0 };
+        self.of_ratio(velocity[i] / p.get(1)[i], exponent)
+    }
+
+    /// The same of a speed in Stribeck velocities.
+    fn of_ratio(self, u: f64, exponent: f64) -> f64 {
         match self {
             Self::Rational => 1.0 / (1.0 + u * u),
             Self::Gaussian => (-u * u).exp(),
-            Self::Exponential => (-u.abs().powf(p.get(2)[i])).exp(),
+            Self::Exponential => (-u.abs().powf(exponent)).exp(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Constants in C: their names, and numbers to the bit.
 
-use crate::model::Term;
+use crate::model::ModelEffect;
 
 /// The constant of a parameter.
 pub(crate) fn constant(effect: &str, parameter: &str) -> String {
@@ -10,7 +10,7 @@ pub(crate) fn constant(effect: &str, parameter: &str) -> String {
 }
 
 /// A law with the constants of a term in place of its parameters.
-pub(crate) fn filled(term: &Term, law: &str) -> String {
+pub(crate) fn filled(term: &ModelEffect, law: &str) -> String {
     let parameters = term.effect().about().parameters;
     parameters.iter().fold(law.to_owned(), |law, parameter| {
         law.replace(&format!("{{{}}}", parameter.name), &constant(term.name(), parameter.name))

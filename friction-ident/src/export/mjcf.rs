@@ -7,7 +7,7 @@ use super::xml::comment;
 use super::{ExportError, Exported, File, LeftOut, check_name, check_step};
 use crate::axis::Axis;
 use crate::effects::Slot;
-use crate::model::{Model, Term};
+use crate::model::{Model, ModelEffect};
 
 const RIGID: &str = "the friction of a MuJoCo joint holds rigidly until it slides";
 const JOINT: &str = "a MuJoCo joint has Coulomb and viscous friction and a linear spring only";
@@ -87,7 +87,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn take(&mut self, term: &Term) {
+    fn take(&mut self, term: &ModelEffect) {
         let p = term.values();
         match term.name() {
             "coulomb" if p[0] >= 0.0 => self.friction = p[0],
@@ -262,7 +262,7 @@ fn friction(level: f64, step: f64) -> String {
     )
 }
 
-fn why(term: &Term) -> &'static str {
+fn why(term: &ModelEffect) -> &'static str {
     let about = term.effect().about();
     match about.slots.first() {
         Some(Slot::Contact) => RIGID,

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use super::ExportError;
 use super::constants::{filled, number};
-use super::dynamics::{Dynamics, constants, dynamics, with_states};
-use crate::effects::CLaw;
-use crate::model::{Model, Term};
+use super::dynamics::{constants, dynamics, with_states};
+use crate::effects::{CDynamics, CLaw};
+use crate::model::{Model, ModelEffect};
 
 const HEADER: &str = include_str!("c/plant.h");
 const SOURCE: &str = include_str!("c/plant.c");
@@ -16,9 +16,9 @@ const ELASTIC: &str = include_str!("c/elastic_step.c");
 
 /// A term with its place in the arrays of the plant.
 struct Piece<'a> {
-    term: &'a Term,
+    term: &'a ModelEffect,
     law: CLaw,
-    dynamics: Dynamics,
+    dynamics: CDynamics,
     first_parameter: usize,
     first_state: usize,
 }
@@ -177,12 +177,12 @@ impl<'a> Plant<'a> {
         self.pieces.iter().map(of).collect()
     }
 
-    fn states(&self, part: impl Fn(&Dynamics) -> &'static str) -> String {
+    fn states(&self, part: impl Fn(&CDynamics) -> &'static str) -> String {
         self.pieces.iter().map(|piece| statements(piece, part(&piece.dynamics))).collect()
     }
 
     /// The same of elements: other bodies first, the contact last.
-    fn elements(&self, part: impl Fn(&Dynamics) -> &'static str) -> String {
+    fn elements(&self, part: impl Fn(&CDynamics) -> &'static str) -> String {
         self.attached()
             .chain(self.contact())
             .map(|piece| statements(piece, part(&piece.dynamics)))

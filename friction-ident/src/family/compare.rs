@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
-use missing_physics::diagnosis::noise;
-use missing_physics::report::{Metrics, SplitMetrics, View};
+use missing_physics::diagnosis::views::disagreements;
+use missing_physics::diagnosis::{self, noise};
+use missing_physics::fit::{Fit, Until};
+use missing_physics::report::{Disagreement, Metrics, SplitMetrics, View};
 use missing_physics::statistics::metrics::Sums;
 use missing_physics::statistics::split::Split;
-use missing_physics::{Coordinate, Fitted, ModelFamily};
+use missing_physics::{Coordinate, Discovery, Fitted, ModelFamily};
 
 use super::FrictionFamily;
 use super::views::{held_out, parted};
@@ -36,7 +38,49 @@ pub struct SideBySide {
     pub notes: Vec<String>,
 }
 
+/// Given models on one recording.
+pub struct GivenModels {
+    /// What is told of the first model.
+    pub discovery: Discovery,
+    /// Every model that there was time for, with its views.
+    pub models: Vec<(String, Vec<View>)>,
+    /// Where views prefer different models.
+    pub between: Vec<Disagreement>,
+    /// Views that there are none of, and why.
+    pub missing: Vec<String>,
+}
+
 impl FrictionFamily {
+    /// Given models, each with its name, on this recording: everything of the first one, the views of each. Once `until` is
+    /// over what takes long is left out. Nothing without a model.
+    ///
+    /// # Errors
+    /// Terms of a model do not fit together.
+    pub fn compared(
+        &self,
+        models: &[(String, Fit)],
+        seed: u64,
+        until: Until<'_>,
+    ) -> Result<Option<GivenModels>, ModelError> {
+        let Some((_, first)) = models.first() else { return Ok(None) };
+        let (over, rung) = (|| until.is_over(), diagnosis::rung(self, first, &[]));
+        let mut discovery = diagnosis::comparison(self, (first, first), vec![rung], seed, &over);
+        let (mut views, mut missing) = (Vec::new(), Vec::new());
+        for (name, fit) in models.iter().take_while(|_| !over()) {
+            let all = self.side_by_side(&fit.model)?;
+            views.push((name.clone(), all.views));
+            for note in all.notes {
+                if !missing.contains(&note) {
+                    missing.push(note);
+                }
+            }
+        }
+        discovery.views = views.first().map(|(_, views)| views.clone()).unwrap_or_default();
+        discovery.stopped |= over();
+        let between = disagreements(&views);
+        Ok(Some(GivenModels { discovery, models: views, between, missing }))
+    }
+
     /// The error of `fitted` as force along the measured motion, over restarted windows of 0.05, 0.1 and
     /// 0.2 s, in a free run and, where the recording has a channel `reference`, in the closed loop.
     ///

@@ -5,26 +5,25 @@ use missing_physics::family::Trial;
 use missing_physics::report::{NamedValue, Refusal};
 
 use super::FrictionFamily;
-use crate::effects::{AsFound, Effect, Refused};
+use crate::effects::{Along, AsFound, Before, Effect, Refused, SecondBody};
 
 /// Share of the mass that a second body begins with.
 const SECOND_MASS: f64 = 0.5;
-/// Shares of the friction that it is tried with, behind a coupling and behind a gap.
-const SHARES: [f64; 2] = [0.35, 0.6];
-const BEHIND_GAP: [f64; 3] = [0.35, 0.55, 0.75];
-/// Trial frequencies of a coupling, from the lowest, Hz, to this share of the sampling frequency.
-const FREQUENCIES: (usize, f64, f64) = (10, 3.0, 0.25);
-/// Trial gaps of a backlash, from this many standard deviations of the position to a share of the stroke.
-const GAPS: (usize, f64, f64) = (16, 4.0, 0.01);
-/// Frequency of the contact at the end of a gap, Hz, and damping of contact and coupling.
+/// Frequency of the contact at the end of a gap, Hz.
 const CONTACT: f64 = 150.0;
-const DAMPING: (f64, f64) = (0.1, 0.05);
+/// Shares of the friction that a second body takes over in other valleys.
+const SHARES: [f64; 3] = [0.35, 0.55, 0.75];
 
 impl FrictionFamily {
-    /// Whether a term is a second body with friction of its own.
+    /// What a term says of itself as a second body.
+    fn second_body(&self, term: usize) -> Option<&'static SecondBody> {
+        self.effects[term.checked_sub(1)?].second_body()
+    }
+
+    /// Whether a term is a second body whose friction is fitted.
     pub(super) fn is_second_body(&self, term: usize) -> bool {
-        self.terms[term].parameters.iter().any(|p| p.name == "F_L")
-            && self.terms[term].name.contains(':')
+        self.second_body(term).is_some()
+            && self.terms[term].parameters.iter().any(|p| p.name == "F_L")
     }
 
     /// Whether a term is tried by itself, not only in the place of another form.
@@ -34,8 +33,8 @@ impl FrictionFamily {
 
     /// The model with a term in its more flexible form, beginning where it is.
     pub(super) fn in_flexible_form(&self, model: &Fitted, term: usize) -> Option<Fitted> {
-        let name = self.terms[term].name.as_str();
-        let to = self.effects[term.checked_sub(1)?].flexible_form()?;
+        let effect = self.effects[term.checked_sub(1)?];
+        let to = effect.flexible_form()?;
         let to = self.terms.iter().position(|term| term.name == to)?;
         let position = model.terms.iter().position(|t| *t == term)?;
         let old = &model.values[model.range(self, position)];
@@ -54,61 +53,36 @@ impl FrictionFamily {
                 values[k] = value.clamp(parameters[k].lower, parameters[k].upper);
             }
         };
-        match self.terms[to].name.as_str() {
-            "stribeck:free" => {
-                let law = |v: f64| hump(name, known("dF"), known("v_s"), known("delta"), v);
-                let end = law(self.top_speed);
-                for (k, share) in KNOTS.iter().enumerate() {
-                    set(&format!("c_{k}"), law(share * self.top_speed) - end);
-                }
-                self.change(&mut base, "coulomb", "F_C", |level| level + end);
-            }
-            "presliding:free" => {
-                let level = self.value(&base, "coulomb", "F_C").unwrap_or(1.0);
-                if let Some(stiffness) = known("k_t") {
-                    set("d", 1.5 * level / stiffness);
-                }
-            }
-            "load-friction:both" => {
-                set("mu", known("mu").unwrap_or(0.0));
-                set("c", known("c").unwrap_or(0.0));
-            }
-            "actuator-lag:second-order" => set("zeta", 1.0),
-            _ => {}
-        }
+        let level = self.value(&base, "coulomb", "F_C");
+        let before = Before { value: &known, level, top_speed: self.top_speed };
+        let begin = effect.begins_flexible(&before);
+        begin.values.iter().for_each(|(name, value)| set(name, *value));
+        self.change(&mut base, "coulomb", "F_C", |level| level + begin.level);
         Some(base.with(to, &values))
     }
 
     /// Ways to begin with a second body, where the term is one.
     pub(super) fn two_masses(&self, model: &Fitted, term: usize) -> Option<Vec<Trial>> {
-        let sampling = 1.0 / self.recording.interval();
-        let spread = |(count, low, high): (usize, f64, f64)| -> Vec<f64> {
-            let part = |k: usize| k as f64 / (count - 1) as f64;
-            (0..count).map(|k| low * (high / low).powf(part(k))).collect()
-        };
-        let shapes: Vec<Vec<(&str, f64)>> = match self.terms[term].name.as_str() {
-            "flexible-coupling:friction" | "flexible-coupling:load" => {
-                let (count, low, share) = FREQUENCIES;
-                let line = spread((count, low, (share * sampling).max(2.0 * low)));
-                line.iter().map(|f| vec![("f", *f), ("zeta", DAMPING.1)]).collect()
+        let body = self.second_body(term)?;
+        let (count, low, high) = match body.along {
+            Along::Frequency { count, low, share } => {
+                (count, low, (share / self.recording.interval()).max(2.0 * low))
             }
-            "backlash:two-mass" => {
-                let (count, deviations, share) = GAPS;
+            Along::Gap { count, deviations, share } => {
                 let least = deviations * self.position_deviation();
-                let most = (share * (self.stroke.1 - self.stroke.0)).max(2.0 * least);
-                let line = spread((count, least, most));
-                line.iter().map(|b| vec![("b", *b), ("zeta", DAMPING.0)]).collect()
+                (count, least, (share * (self.stroke.1 - self.stroke.0)).max(2.0 * least))
             }
-            _ => return None,
         };
-        Some(self.second_bodies(model, term, &shapes))
+        let part = |k: usize| k as f64 / (count - 1) as f64;
+        let line: Vec<f64> = (0..count).map(|k| low * (high / low).powf(part(k))).collect();
+        Some(self.second_bodies(model, (term, body), &line))
     }
 
     fn second_bodies(
         &self,
         model: &Fitted,
-        term: usize,
-        shapes: &[Vec<(&str, f64)>],
+        (term, body): (usize, &SecondBody),
+        line: &[f64],
     ) -> Vec<Trial> {
         let parameters = &self.terms[term].parameters;
         let mass = self.mass_of(model);
@@ -120,10 +94,8 @@ impl FrictionFamily {
         let reduced = mass * SECOND_MASS * (1.0 - SECOND_MASS);
         let stiffness = (std::f64::consts::TAU * CONTACT).powi(2) * reduced;
         let mut trials = Vec::new();
-        let shares =
-            if parameters.iter().any(|p| p.name == "b") { &BEHIND_GAP[..] } else { &SHARES };
-        for &share in shares {
-            for shape in shapes {
+        for &share in body.shares {
+            for &at in line {
                 let mut base = model.clone();
                 if self.given.is_none() && !self.terms[0].parameters.is_empty() {
                     base.values[0] = mass * (1.0 - SECOND_MASS);
@@ -137,7 +109,8 @@ impl FrictionFamily {
                     "F_L" => Some(level * share),
                     "d_L" => Some(damping * share),
                     "k" => Some(stiffness),
-                    _ => shape.iter().find(|(known, _)| *known == name).map(|(_, value)| *value),
+                    "zeta" => Some(body.damping),
+                    _ => (name == body.along.parameter()).then_some(at),
                 };
                 let values = parameters
                     .iter()
@@ -167,19 +140,13 @@ impl FrictionFamily {
     /// The model with its second body, if that is the last term, at other gaps or frequencies and with other shares
     /// of the friction.
     fn other_second_bodies(&self, model: &Fitted) -> Vec<Fitted> {
-        let Some(&term) = model.terms.last().filter(|term| self.is_second_body(**term)) else {
-            return Vec::new();
-        };
+        let Some((term, body)) = self.last_second_body(model) else { return Vec::new() };
         let name = self.terms[term].name.clone();
-        let (length, factors) = if self.place(model, &name, "b").is_some() {
-            ("b", [0.75, 0.9, 1.0, 1.12, 1.35])
-        } else {
-            ("f", [0.75, 0.88, 1.0, 1.14, 1.33])
-        };
+        let (length, factors) = (body.along.parameter(), body.factors);
         let friction = [("F_L", "coulomb", "F_C"), ("d_L", "viscous", "F_v")];
         let mut all = Vec::new();
-        for factor in factors {
-            for share in std::iter::once(None).chain(BEHIND_GAP.map(Some)) {
+        for &factor in factors {
+            for share in std::iter::once(None).chain(SHARES.map(Some)) {
                 if factor == 1.0 && share.is_none() {
                     continue;
                 }
@@ -207,31 +174,29 @@ impl FrictionFamily {
     /// The model with its second body, if that is the last term, behind a coupling in place of a gap, or the other way
     /// round: a gap that is nearly closed is a coupling.
     pub(super) fn related_second_bodies(&self, model: &Fitted) -> Vec<Fitted> {
-        let Some(&term) = model.terms.last().filter(|term| self.is_second_body(**term)) else {
-            return Vec::new();
-        };
+        let Some((term, body)) = self.last_second_body(model) else { return Vec::new() };
         let name = self.terms[term].name.as_str();
         let of = |parameter: &str| self.value(model, name, parameter).unwrap_or(0.0);
         let tau = std::f64::consts::TAU;
-        let others: &[&str] = match name {
-            "backlash:two-mass" => &["flexible-coupling:friction"],
-            "flexible-coupling:friction" => &["backlash:two-mass"],
-            _ => &[],
+        let to = body.related.and_then(|to| self.terms.iter().position(|term| term.name == to));
+        let Some((to, other)) = to.and_then(|to| Some((to, self.second_body(to)?))) else {
+            return Vec::new();
         };
-        let each = |other: &&str| {
-            let to = self.terms.iter().position(|term| term.name == **other)?;
-            let deviation = self.position_deviation();
-            let value = |parameter: &str| match parameter {
-                "f" => (of("k") / of("m_L").max(f64::MIN_POSITIVE)).sqrt() / tau,
-                "k" => of("m_L") * (tau * of("f")).powi(2),
-                "b" => GAPS.1 * deviation,
-                known => of(known),
-            };
-            let values = self.terms[to].parameters.iter();
-            let values: Vec<f64> = values.map(|p| value(&p.name).clamp(p.lower, p.upper)).collect();
-            Some(model.without(self, term).with(to, &values))
+        let value = |parameter: &str| match (parameter, other.along) {
+            ("f", _) => (of("k") / of("m_L").max(f64::MIN_POSITIVE)).sqrt() / tau,
+            ("k", _) => of("m_L") * (tau * of("f")).powi(2),
+            ("b", Along::Gap { deviations, .. }) => deviations * self.position_deviation(),
+            (known, _) => of(known),
         };
-        others.iter().filter_map(each).collect()
+        let values = self.terms[to].parameters.iter();
+        let values: Vec<f64> = values.map(|p| value(&p.name).clamp(p.lower, p.upper)).collect();
+        vec![model.without(self, term).with(to, &values)]
+    }
+
+    /// The last term of a model, if it is a second body.
+    fn last_second_body(&self, model: &Fitted) -> Option<(usize, &'static SecondBody)> {
+        let &term = model.terms.last().filter(|term| self.is_second_body(**term))?;
+        Some((term, self.second_body(term)?))
     }
 
     /// A term that is no such effect as it was fitted, and why.
@@ -301,29 +266,17 @@ impl FrictionFamily {
     }
 }
 
-/// Knots of `stribeck:free` in shares of the top speed.
-const KNOTS: [f64; 9] = [0.0, 0.001, 0.003, 0.008, 0.016, 0.03, 0.06, 0.12, 0.3];
-
-/// Level of a Stribeck hump of any form at a speed.
-fn hump(form: &str, height: Option<f64>, speed: Option<f64>, exponent: Option<f64>, v: f64) -> f64 {
-    let ratio = v / speed.unwrap_or(1e-3);
-    let share = match form {
-        "stribeck:gaussian" => (-ratio * ratio).exp(),
-        "stribeck:exponential" => (-ratio.powf(exponent.unwrap_or(1.0))).exp(),
-        _ => 1.0 / (1.0 + ratio * ratio),
-    };
-    height.unwrap_or(0.0) * share
-}
-
 #[cfg(test)]
 mod tests {
     use missing_physics::{Channel, Recording, TermParameter};
 
     use super::*;
+    use crate::axis::Quantity;
+    use crate::effects::{About, Begin, Library, Parameter};
     use crate::family::Options;
 
     /// A mass of 20 kg on a sine with counts of 1 um, 20 N (rms) at 1 ms.
-    fn family() -> FrictionFamily {
+    fn recording() -> Recording {
         let time: Vec<f64> = (0..4000).map(|k| f64::from(k) * 1e-3).collect();
         let (w, size) = (2.0 * std::f64::consts::PI, 0.0358);
         let position = time.iter().map(|t| (size * (w * t).sin() / 1e-6).round() * 1e-6);
@@ -333,8 +286,11 @@ mod tests {
             channel("force", "N", force.collect()),
             channel("position", "m", position.collect()),
         ];
-        let recording = Recording::new("sine", time.clone(), channels).unwrap();
-        FrictionFamily::new(&recording, &Options::default()).unwrap()
+        Recording::new("sine", time.clone(), channels).unwrap()
+    }
+
+    fn family() -> FrictionFamily {
+        FrictionFamily::new(&recording(), &Options::default()).unwrap()
     }
 
     /// Why a second body of 10 kg behind 20 kg is none, with these values in the place of sensible ones.
@@ -349,6 +305,74 @@ mod tests {
         let (refused, why) = family.vanishes(&model)?;
         assert_eq!(refused, term);
         Some(why)
+    }
+
+    /// A user's second body, which a user's hump may take the place of.
+    struct Own;
+    static OWN_ABOUT: About = About {
+        name: "own-body",
+        title: "a body of the user's",
+        equation: "m_L x_L'' = ...",
+        parameters: &[
+            Parameter::level("m_L", "mass", Quantity::Mass, 1e3, 10.0),
+            Parameter::shape("f", "frequency", Quantity::Frequency, (1.0, 500.0), 50.0),
+            Parameter::level("F_L", "friction", Quantity::Force, 200.0, 4.0),
+        ],
+        slots: &[],
+        shows: "",
+        reference: "a test",
+    };
+    static OWN_BODY: SecondBody = SecondBody {
+        along: Along::Frequency { count: 4, low: 5.0, share: 0.04 },
+        damping: 0.1,
+        shares: &[0.2, 0.4],
+        factors: &[0.5, 1.0],
+        related: None,
+    };
+
+    impl Effect for Own {
+        fn about(&self) -> &'static About {
+            &OWN_ABOUT
+        }
+
+        fn second_body(&self) -> Option<&'static SecondBody> {
+            Some(&OWN_BODY)
+        }
+
+        fn flexible_form(&self) -> Option<&'static str> {
+            Some("stribeck")
+        }
+
+        fn begins_flexible(&self, before: &Before<'_>) -> Begin {
+            let level = (before.value)("F_L").unwrap_or(0.0);
+            Begin { level: 1.5, ..Begin::at([("dF", 0.5 * level)]) }
+        }
+    }
+
+    #[test]
+    fn an_effect_of_the_user_says_where_its_fits_and_its_flexible_form_begin() {
+        let library = Library::default().with(&Own);
+        let options = Options { library, ..Options::default() };
+        let family = FrictionFamily::new(&recording(), &options).unwrap();
+        let of = |name: &str| family.terms.iter().position(|term| term.name == name).unwrap();
+        let (own, coulomb) = (of("own-body"), of("coulomb"));
+        let base = Fitted { terms: vec![0, coulomb], values: vec![20.0, 8.0] };
+        let trials = family.two_masses(&base, own).unwrap();
+        assert_eq!(trials.len(), 8);
+        let at = |k: usize, parameter: &str| {
+            family.value(&trials[k].model, "own-body", parameter).unwrap()
+        };
+        // 5 Hz to a twenty-fifth of 1 kHz, half of the mass, a fifth of the friction.
+        assert!((at(0, "f") - 5.0).abs() < 1e-9 && (at(3, "f") - 40.0).abs() < 1e-9);
+        assert_eq!((at(0, "m_L"), at(0, "F_L"), at(4, "F_L")), (10.0, 1.6, 3.2));
+        assert_eq!(family.value(&trials[0].model, "coulomb", "F_C"), Some(6.4));
+        let model = base.with(own, &[10.0, 50.0, 6.0]);
+        // A half and the whole of the frequency with four choices of the friction, less the fit itself.
+        assert_eq!(family.beside(&model).len(), 7);
+        let hump = family.in_flexible_form(&model, own).unwrap();
+        assert_eq!(hump.terms, [0, coulomb, of("stribeck")]);
+        assert_eq!(family.value(&hump, "stribeck", "dF"), Some(3.0));
+        assert_eq!(family.value(&hump, "coulomb", "F_C"), Some(9.5));
     }
 
     #[test]

@@ -113,7 +113,7 @@ impl FrictionFamily {
                 let about = term.effect().about();
                 ELSEWHERE.iter().any(|slot| about.acts_on(*slot)) || term.effect().is_of_place()
             })
-            .map(crate::model::Term::name)
+            .map(crate::model::ModelEffect::name)
             .collect();
         let part = names.iter().fold(model.clone(), |model, name| model.without(name));
         part.get(MASS).is_ok().then_some(part)

@@ -124,12 +124,10 @@ impl Given {
         let size = rms(family.target());
         model.terms.iter().enumerate().skip(1).find_map(|(place, term)| {
             let name = family.terms[*term].name.as_str();
-            let first = model.values.get(model.range(family, place).start).copied()?;
-            let of_given = match name {
-                "inertia" => first.abs() / self.mass,
-                "model-gain" => first.abs(),
-                _ => f64::INFINITY,
-            };
+            let effect = family.effects[term.checked_sub(1)?];
+            let values = &model.values[model.range(family, place)];
+            let of_given = effect.share_of_given(values, self.mass).filter(|_| !values.is_empty());
+            let of_given = of_given.unwrap_or(f64::INFINITY);
             if of_given < LEAST_OF_GIVEN {
                 let (share, least) = (of_given, LEAST_OF_GIVEN);
                 return Some((
@@ -141,7 +139,7 @@ impl Given {
             let change: Vec<f64> = all.iter().zip(&without).map(|(a, b)| a - b).collect();
             let change = rms(&change);
             let share = change / size;
-            let slots = family.effects[term.checked_sub(1)?].about().slots;
+            let slots = effect.about().slots;
             let moves = of_given.is_finite()
                 || slots.contains(&Slot::Drive)
                 || slots.contains(&Slot::Attached);

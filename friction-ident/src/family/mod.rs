@@ -9,12 +9,14 @@ pub mod compare;
 mod coordinates;
 pub mod experiment;
 mod filter;
+mod foreign;
 mod forms;
 mod friction;
 mod full_rate;
 mod generic;
 mod given;
 mod hold;
+mod in_time;
 mod law;
 mod limits;
 mod own;
@@ -40,6 +42,8 @@ use missing_physics::{ComparedQuantity, Coordinate, Fitted, ModelFamily, Recordi
 use rayon::prelude::*;
 
 pub use apart::{Alike, explained, mistaken_for};
+pub use compare::GivenModels;
+pub use foreign::ForeignModel;
 pub use hold::HoldChoice;
 pub use points::{Decides, ModelPoints, PointValues, Points};
 pub use preparation::{PreparationError, Prepared};

@@ -1,4 +1,5 @@
 use aep_core::Aep;
+use missing_physics::fit::Until;
 use missing_physics::{Channel, Hold};
 
 use super::*;
@@ -90,7 +91,7 @@ fn who_is_told_to_stop_keeps_what_was_found() {
     let horizon = Horizon::FreeRun { max_step: 2e-3 };
     let stop = AtomicBool::new(true);
     let task = Identification::new(&table(), &data, &free(), horizon).unwrap();
-    let task = task.with_stop_flag(&stop);
+    let task = task.until(Until::stopped(&stop));
     let aep = Aep::practical().with_population(24);
     let found = task.run_from(&[task.start()], &aep, Budget::generations(120), 3).unwrap();
     assert!(found.generations <= 1, "{found:?}");

@@ -89,6 +89,8 @@ pub struct Plant {
     pub none: Option<usize>,
     /// The effects that are shapes of the rival.
     pub kin: Vec<usize>,
+    /// Forms with what they are forms of.
+    pub forms: Vec<(usize, usize)>,
     /// A term that may be another one as well.
     pub related: Option<(usize, usize)>,
     /// Frequencies beside that of a tone, rad/s.
@@ -175,6 +177,7 @@ impl Plant {
             time,
             none: None,
             kin: vec![PUSH],
+            forms: vec![(BENT, WAVE)],
             related: None,
             leaps: Vec::new(),
             lacks: None,
@@ -309,7 +312,7 @@ impl ModelFamily for Plant {
         &self.regimes
     }
     fn form_of(&self, term: usize) -> Option<usize> {
-        (term == BENT).then_some(WAVE)
+        self.forms.iter().find(|(form, _)| *form == term).map(|(_, main)| *main)
     }
     fn joins(&self, model: &Fitted, term: usize) -> bool {
         let main = |t: usize| self.form_of(t).unwrap_or(t);

@@ -9,7 +9,7 @@ use aep_core::{Aep, Budget, Domain, Driver, FnProblem, Method, Scale, Start};
 
 use crate::family::shapes::{amplitudes, assemble};
 use crate::family::{Fitted, ModelFamily, Role, TermParameter};
-use crate::fit::{self, Fit, weighted_square};
+use crate::fit::{self, Fit, Until, weighted_square};
 use crate::statistics::basis::{Basis, constrained, dot, gram, weighed};
 
 /// Budget of the search over a model's own parameters.
@@ -39,17 +39,18 @@ pub fn identify<F: ModelFamily + ?Sized>(
     weights: &[f64],
     seed: u64,
 ) -> Found {
-    identify_by(family, terms, weights, seed, &Aep::practical())
+    identify_by(family, terms, weights, (&Aep::practical(), seed), Until::default())
 }
 
-/// Like [`identify`], with another optimizer.
+/// Like [`identify`], with another optimizer; once `until` is over the best of the search so far is refined.
 pub fn identify_by<F: ModelFamily + ?Sized>(
     family: &F,
     terms: &[usize],
     weights: &[f64],
-    seed: u64,
-    method: &dyn Method<f64>,
+    (method, seed): (&dyn Method<f64>, u64),
+    until: Until<'_>,
 ) -> Found {
+    let budget = Budget::generations(GENERATIONS);
     let values = terms
         .iter()
         .flat_map(|&term| family.terms()[term].parameters.iter().map(|p| p.start))
@@ -63,12 +64,12 @@ pub fn identify_by<F: ModelFamily + ?Sized>(
     let total = weighted_square(family.target(), weights).max(f64::MIN_POSITIVE);
     let (position, evaluations) = if searched == Role::Amplitude {
         let cost = quadratic(family, &start, &parameters, weights);
-        minimise(&domain, &|x: &[f64]| cost(x) / total, method, GENERATIONS, seed)
+        minimise(&domain, &|x: &[f64]| cost(x) / total, (method, seed), budget, until)
     } else {
         let cost = |x: &[f64]| {
             projected(family, &with_free(&start, &free, x), &parameters, weights).1 / total
         };
-        minimise(&domain, &cost, method, GENERATIONS, seed)
+        minimise(&domain, &cost, (method, seed), budget, until)
     };
     let best = with_free(&start, &free, &position);
     let best = match searched {
@@ -136,7 +137,8 @@ pub fn shaped<F: ModelFamily + ?Sized>(
     let (population, generations) = CANDIDATE;
     let method = Aep::practical().with_population(population);
     let domain: Vec<&TermParameter> = window.iter().collect();
-    let (found, _) = minimise(&domain, &|x: &[f64]| profile(x).0, &method, generations, seed);
+    let (cost, budget) = (|x: &[f64]| profile(x).0, Budget::generations(generations));
+    let (found, _) = minimise(&domain, &cost, (&method, seed), budget, Until::default());
     let searched = !shape.is_empty() && profile(&found).0 < profile(&shape).0;
     let shape = if searched { found } else { shape };
     let amplitude = profile(&shape).1;
@@ -164,13 +166,13 @@ fn with_free(start: &Fitted, free: &[usize], x: &[f64]) -> Fitted {
     model
 }
 
-/// The best position and the evaluations it took; the start where a domain has no extent.
+/// The best position and the evaluations it took; the start where a domain has no extent or there was no time.
 fn minimise(
     parameters: &[&TermParameter],
     cost: &(dyn Fn(&[f64]) -> f64 + Sync),
-    method: &dyn Method<f64>,
-    generations: u64,
-    seed: u64,
+    (method, seed): (&dyn Method<f64>, u64),
+    budget: Budget,
+    until: Until<'_>,
 ) -> (Vec<f64>, usize) {
     let start: Vec<f64> = parameters.iter().map(|p| p.start.clamp(p.lower, p.upper)).collect();
     let lower = parameters.iter().map(|p| p.lower).collect();
@@ -180,8 +182,11 @@ fn minimise(
         let domain = Domain::new(lower, upper)?.with_scales(scales)?;
         let problem = FnProblem::new(domain.clone(), |x: &[f64]| cost(x));
         let mut algorithm = method.start(&Start::new(&domain, seed))?;
-        let budget = Budget::generations(generations).with_stagnation(STAGNATION, 1e-6);
-        Driver::new(budget).in_parallel().run(&mut *algorithm, &problem)
+        let budget = budget.with_stagnation(STAGNATION, 1e-6);
+        let budget = until.left().into_iter().fold(budget, Budget::with_time);
+        let driver = Driver::new(budget).in_parallel();
+        let mut driver = until.stop.into_iter().fold(driver, Driver::with_stop_flag);
+        driver.run(&mut *algorithm, &problem)
     };
     match run() {
         Ok(outcome) if !outcome.position.is_empty() => {

@@ -7,7 +7,7 @@ use super::{ExportError, Units};
 use crate::axis::Axis;
 use crate::effects::CLaw;
 use crate::export::constants::{constant, filled, number};
-use crate::model::Term;
+use crate::model::ModelEffect;
 
 /// Contacts that are written in C, and whether they break at the level at rest.
 const CONTACTS: [(&str, bool); 2] = [("presliding", false), ("presliding:static", true)];
@@ -16,7 +16,7 @@ pub(super) struct Writer<'a> {
     compensator: &'a Compensator,
     units: Units,
     name: &'a str,
-    laws: Vec<(&'a Term, CLaw)>,
+    laws: Vec<(&'a ModelEffect, CLaw)>,
     /// Whether the contact breaks at the level at rest; none without a contact.
     contact: Option<bool>,
 }
@@ -27,7 +27,7 @@ impl<'a> Writer<'a> {
         units: Units,
         name: &'a str,
     ) -> Result<Self, ExportError> {
-        let of = |term: &'a Term| {
+        let of = |term: &'a ModelEffect| {
             let law =
                 term.effect().c_law().ok_or_else(|| ExportError::Effect(term.name().to_owned()))?;
             Ok((term, law))

@@ -3,7 +3,9 @@
 use super::super::load::{Connection, Load, Pulled};
 use super::{About, AsFound, Effect, Parameter, Parameters, Refused, Slot, WIDTH, closed};
 use crate::axis::Quantity;
-use crate::effects::{Correction, Element, Onset, Response, Step};
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::LOAD as LOAD_IN_C;
+use crate::effects::{Along, Correction, Element, Onset, Response, SecondBody, Step};
 use crate::simd::{sign, vectorised};
 
 /// A second mass `m_L` with friction of its own that the mass meets at either end of a gap `b`, over a
@@ -39,9 +41,48 @@ static ABOUT: About = About {
     reference: "M. Nordin, P.-O. Gutman, Automatica 38, 2002; K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42, 1975",
 };
 
+static SECOND_BODY: SecondBody = SecondBody {
+    along: Along::Gap { count: 16, deviations: 4.0, share: 0.01 },
+    damping: 0.1,
+    shares: &[0.35, 0.55, 0.75],
+    factors: &[0.75, 0.9, 1.0, 1.12, 1.35],
+    related: Some("flexible-coupling:friction"),
+};
+
+/// Helper functions in C.
+const GAPPED_IN_C: &str = include_str!("../../export/c/gapped.c");
+
 impl Effect for TwoMass {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 2,
+            helpers: &[LOAD_IN_C, GAPPED_IN_C],
+            load: "{s0} = -0.5 * {b} * sign(velocity) - ({F_L} * sign(velocity) + {d_L} * velocity) / {k};\n{s1} = velocity;",
+            respond: "{
+    const double p[6] = {{m_L}, {F_L}, {d_L}, {b}, {k}, {zeta}};
+    double slope, mean;
+    m->elements += gapped(p, m->left, m->displacement, {s0}, {s1}, &slope, &mean);
+    m->stiffness += slope;
+}",
+            commit: "{
+    const double p[6] = {{m_L}, {F_L}, {d_L}, {b}, {k}, {zeta}};
+    double slope, mean;
+    gapped(p, m->taken, m->displacement, {s0}, {s1}, &slope, &mean);
+    {s0} += m->taken > 0.0 ? m->taken * mean - m->displacement : 0.0;
+    {s1} = 2.0 * mean - {s1};
+}",
+            iterations: 4,
+            attached: true,
+            ..CDynamics::NONE
+        })
+    }
+
+    fn second_body(&self) -> Option<&'static SecondBody> {
+        Some(&SECOND_BODY)
     }
 
     fn element(&self) -> Option<&dyn Element> {

@@ -1,5 +1,7 @@
 //! The load behind the coupling has friction of its own.
 
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::LOAD as LOAD_IN_C;
 use std::f64::consts::TAU;
 
 use super::super::load::{Connection, Load, Pulled};
@@ -8,6 +10,7 @@ use super::{
     Refused, Response, Slot, Step, ZETA, silent,
 };
 use crate::axis::Quantity;
+use crate::effects::{Along, SecondBody};
 use crate::simd::{add_to, vectorised};
 
 /// The main form with Coulomb friction `F_L` and viscous friction `d_L` of the load on the ground. The load
@@ -58,6 +61,52 @@ static LOAD_ABOUT: About = About {
     reference: REFERENCE,
 };
 
+/// With the encoder on the mass; a coupling that gives far is a gap that is nearly closed.
+static SECOND_BODY: SecondBody = SecondBody {
+    along: Along::Frequency { count: 10, low: 3.0, share: 0.25 },
+    damping: 0.05,
+    shares: &[0.35, 0.6],
+    factors: &[0.75, 0.88, 1.0, 1.14, 1.33],
+    related: Some("backlash:two-mass"),
+};
+/// With the encoder on the load.
+static ON_ENCODER: SecondBody = SecondBody { related: None, ..SECOND_BODY };
+
+/// Helper functions in C.
+const COUPLED_IN_C: &str = include_str!("../../export/c/coupled.c");
+
+/// A load with friction behind a coupling; `$shown`: what the encoder shows of it.
+macro_rules! coupled {
+    ($shown:literal) => {
+        CDynamics {
+            states: 2,
+            helpers: &[LOAD_IN_C, COUPLED_IN_C],
+            load: "{
+    const double w = 6.283185307179586 * {f}, k = {m_L} * w * w;
+    {s0} = k > 0.0 ? -({F_L} * sign(velocity) + {d_L} * velocity) / k : 0.0;
+    {s1} = velocity;
+}",
+            respond: "{
+    const double p[5] = {{m_L}, {f}, {zeta}, {F_L}, {d_L}};
+    double slope, mean;
+    m->elements += coupled(p, m->left, m->displacement, {s0}, {s1}, &slope, &mean);
+    m->stiffness += slope;
+}",
+            commit: "{
+    const double p[5] = {{m_L}, {f}, {zeta}, {F_L}, {d_L}};
+    double slope, mean;
+    coupled(p, m->taken, m->displacement, {s0}, {s1}, &slope, &mean);
+    {s0} += m->taken > 0.0 ? m->taken * mean - m->displacement : 0.0;
+    {s1} = 2.0 * mean - {s1};
+}",
+            shown: $shown,
+            iterations: 3,
+            attached: true,
+            ..CDynamics::NONE
+        }
+    };
+}
+
 impl Effect for WithFriction {
     fn about(&self) -> &'static About {
         match self.encoder {
@@ -66,12 +115,26 @@ impl Effect for WithFriction {
         }
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(match self.encoder {
+            Encoder::Mass => coupled!(""),
+            Encoder::Load => coupled!("position += {s0};"),
+        })
+    }
+
     fn element(&self) -> Option<&dyn Element> {
         Some(self)
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         silent(found.values[2])
+    }
+
+    fn second_body(&self) -> Option<&'static SecondBody> {
+        match self.encoder {
+            Encoder::Mass => Some(&SECOND_BODY),
+            Encoder::Load => Some(&ON_ENCODER),
+        }
     }
 }
 

@@ -1,10 +1,12 @@
 //! Dahl's and `LuGre`'s contact: a bristle whose force approaches the friction level smoothly.
 
 use super::{
-    About, Correction, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS,
-    STIFFNESS, Slot, Step,
+    About, Before, Begin, Correction, Effect, Element, Onset, Parameter, Parameters, Quantity,
+    Response, SHOWS, STIFFNESS, Slot, Step, as_far,
 };
+use crate::effects::CDynamics;
 use crate::effects::Leg;
+use crate::effects::c_dynamics::LIMITED;
 use crate::simd::limited;
 
 /// `f' = k_t v (1 - f s / level)`, with `LuGre` and a damping `sigma_1 z'` of the bristle.
@@ -41,13 +43,54 @@ static LUGRE_ABOUT: About = About {
     reference: "C. Canudas de Wit, H. Olsson, K. J. Astrom, P. Lischinsky, IEEE TAC 40, 1995",
 };
 
+/// Helper functions in C.
+const BRISTLE_IN_C: &str = include_str!("../../export/c/bristle.c");
+
+/// A bristle, whose own damping is `$damping`.
+macro_rules! bristle {
+    ($damping:literal) => {
+        CDynamics {
+            states: 1,
+            helpers: &[LIMITED, BRISTLE_IN_C],
+            load: "{s0} = level * used;",
+            respond: concat!(
+                "{
+    const double held = limited({s0}, m->level);
+    double slope;
+    const double end = bristle(held, m->displacement, {k_t}, m->level, &slope);
+    const double rate = ",
+                $damping,
+                " / ({k_t} * fmax(m->left, DBL_MIN));
+    m->elements += 0.5 * (held + end) + rate * (end - held);
+    m->stiffness += (0.5 + rate) * slope;
+}"
+            ),
+            commit: "{
+    double slope;
+    {s0} = bristle({s0}, m->displacement, {k_t}, m->level, &slope);
+}",
+            sliding: "fabs({s0}) >= 0.999 * m->level ? 1.0 : 0.0",
+            iterations: 5,
+            ..CDynamics::NONE
+        }
+    };
+}
+
 impl Effect for Bristle {
     fn about(&self) -> &'static About {
         if self.damped { &LUGRE_ABOUT } else { &DAHL_ABOUT }
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(if self.damped { bristle!("{sigma_1}") } else { bristle!("0.0") })
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("presliding:free")
+    }
+
+    fn begins_flexible(&self, before: &Before<'_>) -> Begin {
+        as_far(before)
     }
 
     fn element(&self) -> Option<&dyn Element> {

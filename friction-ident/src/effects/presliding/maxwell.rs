@@ -1,9 +1,11 @@
 //! Generalised Maxwell slip: springs in parallel that slip one after the other.
 
 use super::{
-    About, Correction, Effect, Element, Onset, Parameter, Parameters, Quantity, Response, SHOWS,
-    STIFFNESS, Slot, Step,
+    About, Before, Begin, Correction, Effect, Element, Onset, Parameter, Parameters, Quantity,
+    Response, SHOWS, STIFFNESS, Slot, Step, as_far,
 };
+use crate::effects::CDynamics;
+use crate::effects::c_dynamics::LIMITED;
 use crate::simd::limited;
 
 /// Number of elements.
@@ -41,8 +43,44 @@ impl Effect for MaxwellSlip {
         &ABOUT
     }
 
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 4,
+            helpers: &[LIMITED],
+            load: "{s0} = {s1} = {s2} = {s3} = level * used / 4.0;",
+            respond: "{
+    const double cap = m->level / 4.0, q = 1.0 / {spread}, sum = 1.0 + q + q * q + q * q * q;
+    double share = 1.0;
+    int e;
+    for (e = 0; e < 4; e++) {
+        const double k = {k_t} * share / sum, held = limited((&{s0})[e], cap), trial = held + k * m->displacement;
+        m->elements += 0.5 * (held + limited(trial, cap));
+        m->stiffness += fabs(trial) <= cap ? 0.5 * k : 0.0;
+        share /= {spread};
+    }
+}",
+            commit: "{
+    const double cap = m->level / 4.0, q = 1.0 / {spread}, sum = 1.0 + q + q * q + q * q * q;
+    double share = 1.0;
+    int e;
+    for (e = 0; e < 4; e++) {
+        const double k = {k_t} * share / sum;
+        (&{s0})[e] = limited(limited((&{s0})[e], cap) + k * m->displacement, cap);
+        share /= {spread};
+    }
+}",
+            sliding: "fabs({s0} + {s1} + {s2} + {s3}) >= 0.999 * m->level ? 1.0 : 0.0",
+            iterations: 5,
+            ..CDynamics::NONE
+        })
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("presliding:free")
+    }
+
+    fn begins_flexible(&self, before: &Before<'_>) -> Begin {
+        as_far(before)
     }
 
     fn few_trials(&self) -> Option<&'static [usize]> {

@@ -103,7 +103,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// A set with one effect more: the most promising ones, fitted, each in the form that is best. A set that is not the
     /// best has a `lag` behind the front, nats.
-    fn expand(
+    pub(super) fn expand(
         &mut self,
         base: &Node,
         from: &Node,
@@ -125,13 +125,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         (self.tell)(&Event::Screening { rung: size, candidates: open.len() });
         let screened = screen(self.family, self.ahead, from, &open, first);
         if first {
-            let mut best = BTreeSet::new();
-            for promise in &screened.promises {
-                if best.len() < AGAIN {
-                    best.insert(self.main(promise.term));
-                }
-            }
-            self.promised.append(&mut best);
+            self.promised.append(&mut self.leading(&screened.promises));
         }
         // The first order seldom promises less than half of what a fit gains.
         let least = if size == 1 {
@@ -145,19 +139,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         } else {
             self.thresholds.fitted.min(self.thresholds.beam)
         };
-        // Two forms of an effect at most, so that one effect does not take all places.
-        let mut mains: Vec<usize> = Vec::new();
-        let mut starts: Vec<&Promise> = Vec::new();
-        for promise in screened.promises.iter().filter(|promise| promise.gain > least) {
-            let main = self.main(promise.term);
-            let forms = mains.iter().filter(|other| **other == main).count();
-            let distinct = mains.iter().collect::<BTreeSet<_>>().len();
-            if forms >= 2 || (forms == 0 && distinct >= most) {
-                continue;
-            }
-            mains.push(main);
-            starts.push(promise);
-        }
+        let starts = self.chosen(&screened.promises, least, most);
         let begin = |promises: &[&Promise]| -> Vec<(usize, Option<Node>)> {
             promises.par_iter().map(|p| (p.term, self.begun(p, from.setting))).collect()
         };
@@ -204,6 +186,40 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let shaped = shaped
             .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
         (shaped.collect(), screened)
+    }
+
+    /// The effects that promise most: those that are looked at again.
+    pub(super) fn leading(&self, promises: &[Promise]) -> BTreeSet<usize> {
+        let mut best = BTreeSet::new();
+        for promise in promises {
+            if best.len() < AGAIN {
+                best.insert(self.main(promise.term));
+            }
+        }
+        best
+    }
+
+    /// What is fitted: promises above `least`, of `most` effects, and of each at most two forms, so that one effect does
+    /// not take all places.
+    pub(super) fn chosen<'p>(
+        &self,
+        promises: &'p [Promise],
+        least: f64,
+        most: usize,
+    ) -> Vec<&'p Promise> {
+        let mut mains: Vec<usize> = Vec::new();
+        let mut starts: Vec<&Promise> = Vec::new();
+        for promise in promises.iter().filter(|promise| promise.gain > least) {
+            let main = self.main(promise.term);
+            let forms = mains.iter().filter(|other| **other == main).count();
+            let distinct = mains.iter().collect::<BTreeSet<_>>().len();
+            if forms >= 2 || (forms == 0 && distinct >= most) {
+                continue;
+            }
+            mains.push(main);
+            starts.push(promise);
+        }
+        starts
     }
 
     /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.

@@ -71,3 +71,23 @@ fn what_chance_gains_as_often_as_it_is_allowed_to_is_not_named() {
     let dropped = found.decisions.iter().find(dropped).unwrap();
     assert_eq!(dropped.because, Some(Reason::Chance));
 }
+
+#[test]
+fn where_pruning_comes_to_a_set_that_no_size_had_the_search_goes_on_from_there() {
+    let hidden = [(WAVE, &[0.2][..]), (BEAT, &[0.12]), (TONE, &[0.04, 5.0])];
+    let plant = Plant::new(2, &hidden);
+    let thresholds = Thresholds { share: 0.0, ..narrow() };
+    let both: (usize, &[f64]) = (BOTH, &[0.001]);
+    let set = |more: &[(usize, &[f64])]| vec![node(&plant, more)];
+    // Nearly the sum of both came first.
+    let sizes = |second| vec![set(&[(BOTH, &[0.15])]), second, set(&[hidden[0], hidden[1], both])];
+    let grown = |second| {
+        let mut climb = climb(&plant, sizes(second));
+        let mut found = search(&plant, thresholds).grown(&mut climb).effects(&plant);
+        found.sort_unstable();
+        found
+    };
+    assert_eq!(grown(set(&[(BOTH, &[0.12]), (WAVE, &[0.08])])), [WAVE, BEAT, TONE]);
+    // Where a size had it, what comes after it is known.
+    assert_eq!(grown(set(&hidden[..2])), [WAVE, BEAT]);
+}

@@ -1,6 +1,7 @@
 //! Which sets are looked at, and where a search ends.
 
 use super::*;
+use crate::ahead::screen::Promise;
 
 /// What a search compared at its first size.
 fn first(plant: &Plant, candidates: &[usize], thresholds: Thresholds) -> (Climb, Vec<String>) {
@@ -96,4 +97,78 @@ fn a_related_effect_is_fitted_where_one_that_it_is_related_to_leads() {
     plant.related = Some((WAVE, PUSH));
     assert_eq!(names(&plant, &[WAVE, PUSH]), ["push", "wave"]);
     assert_eq!(names(&plant, &[WAVE]), ["wave"], "no candidate");
+}
+
+/// Promises of terms in this order, the first one the largest.
+fn promises(terms: &[usize]) -> Vec<Promise> {
+    let promise = |(place, term): (usize, &usize)| Promise {
+        term: *term,
+        gain: 100.0 - place as f64,
+        starts: Vec::new(),
+        leverage: None,
+    };
+    terms.iter().enumerate().map(promise).collect()
+}
+
+fn terms(chosen: &[&Promise]) -> Vec<usize> {
+    chosen.iter().map(|promise| promise.term).collect()
+}
+
+#[test]
+fn at_most_two_forms_of_an_effect_are_fitted_and_they_are_one_effect() {
+    let mut plant = Plant::new(1, &[]);
+    plant.forms = vec![(BENT, WAVE), (BEAT, WAVE)];
+    let search = search(&plant, narrow());
+    let all = promises(&[WAVE, BENT, BEAT, TONE, PUSH]);
+    assert_eq!(terms(&search.chosen(&all, 0.0, 5)), [WAVE, BENT, TONE, PUSH]);
+    assert_eq!(terms(&search.chosen(&all, 0.0, 2)), [WAVE, BENT, TONE]);
+    assert_eq!(terms(&search.chosen(&all, 99.5, 5)), [WAVE]);
+}
+
+#[test]
+fn beside_sets_that_are_not_the_best_eight_effects_are_looked_at_whatever_their_forms() {
+    let mut plant = Plant::new(1, &[]);
+    plant.forms = vec![(2, 1), (5, 4)];
+    let leading = search(&plant, narrow()).leading(&promises(&[9, 1, 2, 3, 4, 5, 6, 7, 8, 10, 11]));
+    assert_eq!(leading.into_iter().collect::<Vec<_>>(), [1, 3, 4, 6, 7, 8, 9, 10]);
+}
+
+/// Terms of the last effect of each set beside a wave, where that set lags so far behind.
+fn beside_a_wave(promised: &[usize], lag: f64) -> Vec<usize> {
+    let plant = Plant::new(1, &[(WAVE, &[0.05]), (BEAT, &[0.05]), (TONE, &[0.05, 5.0])]);
+    let mut search = search(&plant, EVERYTHING);
+    search.promised.extend(promised);
+    let (base, from) = (node(&plant, &[]), node(&plant, &[(WAVE, &[0.05])]));
+    let (children, _) = search.expand(&base, &from, 1, Some(lag));
+    let mut last: Vec<usize> =
+        children.iter().filter_map(|child| child.model.terms.last().copied()).collect();
+    last.sort_unstable();
+    last
+}
+
+#[test]
+fn beside_a_set_that_lags_only_what_promised_beside_the_best_is_fitted() {
+    assert_eq!(beside_a_wave(&[BEAT, TONE], 0.0), [BEAT, TONE]);
+    assert_eq!(beside_a_wave(&[TONE], 0.0), [TONE]);
+}
+
+#[test]
+fn beside_a_set_that_lags_far_behind_what_promises_too_little_to_catch_up_is_not_fitted() {
+    // A beat and a tone promise some hundred nats here.
+    assert_eq!(beside_a_wave(&[BEAT, TONE], 1e3), [BEAT, TONE]);
+    assert_eq!(beside_a_wave(&[BEAT, TONE], 1e5), [0; 0]);
+}
+
+#[test]
+fn what_is_related_to_an_effect_that_errs_much_more_than_the_best_is_not_fitted() {
+    let names = |size: f64| {
+        let mut plant = Plant::new(1, &[(WAVE, &[size])]);
+        plant.related = Some((BOTH, PUSH));
+        first(&plant, &[WAVE, BOTH, PUSH], EVERYTHING).1
+    };
+    for (size, is_fitted) in [(0.05, false), (0.01, true)] {
+        let names = names(size);
+        assert!(names.contains(&"both".to_owned()), "{size}: {names:?}");
+        assert_eq!(names.contains(&"push".to_owned()), is_fitted, "{size}: {names:?}");
+    }
 }
