@@ -10,7 +10,7 @@ use friction_ident::model::Timing;
 use friction_ident::{Axis, Effort, Known, Model, Quantity};
 use missing_physics::diagnosis::fitted_blocks;
 use missing_physics::fit::{self, Fit};
-use missing_physics::measurement::cut_at_gaps;
+use missing_physics::measurement::looked_at;
 use missing_physics::report::Rung;
 use missing_physics::{Discovery, Fitted, Recording, model_of, terms};
 
@@ -32,14 +32,14 @@ type NamedMethod = (&'static str, fn() -> Box<dyn Method<f64>>);
 pub const ALGORITHMS: &[NamedMethod] =
     &[("aep", || Box::new(Aep::practical())), ("meta-ep", || Box::new(MetaEp::practical()))];
 
-/// The model family of a recording; nothing is interpolated over its long gaps.
+/// The model family of a recording, of a very long one of pieces of it; nothing is interpolated over its long gaps.
 pub fn family(
     recording: &Recording,
     bandwidth: Option<f64>,
     known: &Known,
 ) -> Result<FrictionFamily, Failure> {
-    let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::new(&whole, &options(bandwidth, known))?)
+    let used = looked_at(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
+    Ok(FrictionFamily::new(&used, &options(bandwidth, known))?)
 }
 
 /// The models of a ladder.

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::output::{self, heading};
 use crate::report::{Kind, Report};
 use crate::steps;
-use crate::stop::Watch;
+use crate::stop::{self, Watch};
 use crate::{outputs, series};
 
 /// Compare a model with a measurement: errors in several views and where it fails
@@ -62,6 +62,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             ("--series", args.series.path()),
         ],
     )?;
+    stop::at_once();
     let loaded = args.data.read()?;
     let models: Vec<Model> = if args.model.is_empty() {
         vec![steps::model_or_given(None, &loaded.recording)?]
@@ -74,6 +75,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let Some(fit) = fits.first() else {
         return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
     };
+    stop::keeping();
     let rung = diagnosis::rung(&family, fit, &[]);
     let effects = rung.effects.join(" + ");
     let mut discovery = diagnosis::comparison(&family, (fit, fit), vec![rung], args.seed, &|| watch.is_over());

@@ -111,7 +111,7 @@ fn after_ctrl_c_the_axes_that_are_done_are_kept() {
     let line = "discover arm.csv --threads 1 --axes all --hold zero-order --time-limit none";
     let run = desk.interrupted(&format!("{line} --json a.json"), 1.0);
     assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
-    assert!(run.out.contains("not begun"), "{}", run.out);
+    assert!(run.out.contains("not done"), "{}", run.out);
     let json = desk.json("a.json");
     checked(&json);
     assert_eq!(json["interrupted"], true);

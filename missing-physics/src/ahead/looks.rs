@@ -313,10 +313,12 @@ impl<'a> Run<'a> {
         let base = if let Some(near) = &self.settings.start {
             search.base_near(near.clone())
         } else {
-            let everywhere = vec![1.0; family.target().len()];
-            let start = fit::identify(family, base, &everywhere, self.settings.seed);
+            // A start needs no more than a part.
+            let near = family.in_part().unwrap_or(family);
+            let everywhere = vec![1.0; near.target().len()];
+            let start = fit::identify(near, base, &everywhere, self.settings.seed);
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
-            search.base(start.fit.model)
+            search.base(start.fit.model.within(family))
         };
         let climb = search.begin(base);
         Pursuit { reading, search, climb }
