@@ -161,10 +161,19 @@ impl Found {
         self.gains = before.zip(&self.rungs).map(|(a, b)| comparison.compare(a, b)).collect();
         if thresholds.most == 0 {
             // Nothing is to be added: what candidates gain is all that is told.
-            let gain = |model: &Fitted| {
-                let node = whole(model);
+            let fitted = |start: &Fitted| {
+                let node = whole(start);
                 let nats = comparison.compare(&self.base, &node).nats;
                 (node.model, nats)
+            };
+            let gain = |term: usize, model: &Fitted| {
+                let found = fitted(model);
+                let place = model.terms.iter().position(|other| *other == term);
+                let Some(place) = place.filter(|_| found.1 < 0.0) else { return found };
+                // A part led to another valley: with a term more a model can do no worse.
+                let values = &model.values[model.range(family, place)];
+                let again = fitted(&self.base.model.with(term, values));
+                if again.1 > found.1 { again } else { found }
             };
             if let Some(ranked) = self.ranking.first_mut() {
                 ranked.ask(thresholds.better, gain);
@@ -275,14 +284,14 @@ const ASKED: usize = 3;
 impl Ranked {
     /// Replaces what the first candidates promise, as far as that is more than `least`, by what `gain` makes of them,
     /// until it is known of those that are first then.
-    fn ask(&mut self, least: f64, gain: impl Fn(&Fitted) -> (Fitted, f64)) {
+    fn ask(&mut self, least: f64, gain: impl Fn(usize, &Fitted) -> (Fitted, f64)) {
         let mut asked = Vec::new();
         loop {
             let first = self.rows.iter_mut().take(ASKED);
             let mut open = first.filter(|row| row.2 > least && !asked.contains(&row.0));
             let Some(row) = open.next() else { break };
             asked.push(row.0);
-            (row.1, row.2) = gain(&row.1);
+            (row.1, row.2) = gain(row.0, &row.1);
             self.rows.sort_by(|a, b| b.2.total_cmp(&a.2));
         }
     }
