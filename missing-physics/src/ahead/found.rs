@@ -409,7 +409,7 @@ mod tests {
         let told = found.clone().confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
         let [(first, _, gain), (second, _, nothing)] = &told.ranking[0].rows[..] else { panic!() };
         assert_eq!((*first, *second), (WAVE, BEAT));
-        assert!(*gain > 20.0 && *gain < 500.0 && *nothing < 20.0, "{gain} {nothing}");
+        assert!(*gain > 1000.0 && *nothing < 20.0, "{gain} {nothing}");
         // A search that adds tells of its rungs.
         let thresholds = Thresholds { most: 1, ..thresholds };
         let told = found.confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
