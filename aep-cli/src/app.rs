@@ -67,13 +67,14 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if answer.use_stderr() { BAD_INPUT } else { 0 });
         }
     };
-    match run(cli) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            output::error(&failure);
-            ExitCode::from(failure.code)
-        }
-    }
+    end(run(cli))
+}
+
+/// Tells of a failure and ends the program, whatever it is still at.
+pub fn end(result: Result<(), Failure>) -> ! {
+    let Err(failure) = result else { std::process::exit(0) };
+    output::error(&failure);
+    std::process::exit(i32::from(failure.code))
 }
 
 /// Runs a command by the words that would be typed after `aep`.

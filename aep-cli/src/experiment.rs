@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::path::Path;
+use std::sync::Arc;
 
 use friction_ident::family::FrictionFamily;
 use friction_ident::family::experiment::{Experiment, Separation};
@@ -10,6 +11,7 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::output::{heading, save, written};
+use crate::stop;
 
 /// What is told of an experiment.
 #[derive(Default)]
@@ -21,11 +23,10 @@ pub struct Proposal {
 }
 
 /// Finds the motion that separates `effects`, each on top of the effects `below`, and writes it to `path`.
-/// Where there is nothing to separate, nothing is written, and the proposal says so.
+/// Where there is nothing to separate, nothing is written, and the proposal says so; nor is there one where Ctrl-C comes.
 pub fn propose(
-    family: &FrictionFamily,
-    below: &[String],
-    effects: &[String],
+    family: &Arc<FrictionFamily>,
+    (below, effects): (Vec<String>, Vec<String>),
     path: &Path,
     seed: u64,
 ) -> Result<Proposal, Failure> {
@@ -34,7 +35,9 @@ pub fn propose(
             "\nNo experiment is written: there are no rival effects to tell apart.\n".to_owned();
         return Ok(Proposal { text, more: vec![("experiment", Value::Null)] });
     }
-    let found = find(family, below, effects, seed)?;
+    let family = Arc::clone(family);
+    let found = stop::unless_interrupted(move || find(&family, &below, &effects, seed));
+    let Some(found) = found.transpose()? else { return Ok(Proposal::default()) };
     write(&found, path)?;
     let mut json = serde_json::to_value(&found)
         .map_err(|error| Failure::failed(format!("cannot write JSON: {error}")))?;

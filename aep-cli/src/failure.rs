@@ -17,7 +17,7 @@ pub const INTERRUPTED: u8 = 130;
 pub const FAILED: u8 = 1;
 
 /// Why a command ends without a result.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Failure {
     /// What is wrong.
     pub what: String,

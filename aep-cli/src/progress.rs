@@ -7,6 +7,8 @@ use aep_studio::words;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use missing_physics::{Event, Observer};
 
+use crate::stop;
+
 /// A line that says what is being done.
 pub struct Progress {
     line: ProgressBar,
@@ -56,6 +58,11 @@ impl Progress {
         self.line.inc(1);
     }
 
+    /// Shows nothing any more.
+    pub fn hide(&self) {
+        self.line.finish_and_clear();
+    }
+
     /// Says what is being done now.
     pub fn say(&self, text: impl Into<String>) {
         self.line.set_message(text.into());
@@ -64,12 +71,16 @@ impl Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        self.line.finish_and_clear();
+        self.hide();
     }
 }
 
 impl Observer for Progress {
     fn event(&mut self, event: &Event<'_>) {
+        // With a base model there is something to tell.
+        if !matches!(event, Event::BaseFitted { .. }) {
+            stop::keeping();
+        }
         if let Some(said) = said(event) {
             self.say(said);
         }

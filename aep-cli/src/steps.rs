@@ -8,7 +8,7 @@ use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::model::Timing;
 use friction_ident::{Axis, Effort, Known, Model, Quantity};
-use missing_physics::measurement::cut_at_gaps;
+use missing_physics::measurement::looked_at;
 use missing_physics::{Discovery, Fitted, Recording, model_of};
 
 use crate::args::library;
@@ -18,14 +18,14 @@ use crate::failure::Failure;
 pub const ALGORITHMS: &[(&str, &str)] =
     &[("aep", "aep-practical"), ("meta-ep", "meta-ep-practical")];
 
-/// The model family of a recording; nothing is interpolated over its long gaps.
+/// The model family of a recording, of a very long one of pieces of it; nothing is interpolated over its long gaps.
 pub fn family(
     recording: &Recording,
     bandwidth: Option<f64>,
     known: &Known,
 ) -> Result<FrictionFamily, Failure> {
-    let whole = cut_at_gaps(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::new(&whole, &options(bandwidth, known))?)
+    let used = looked_at(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
+    Ok(FrictionFamily::new(&used, &options(bandwidth, known))?)
 }
 
 /// The models of a ladder.

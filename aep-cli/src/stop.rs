@@ -2,6 +2,7 @@
 //! there is nothing to keep.
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use missing_physics::fit::Until;
@@ -11,8 +12,8 @@ use crate::failure::{Failure, INTERRUPTED};
 static STOP: AtomicBool = AtomicBool::new(false);
 static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
-/// What was found in a recording of more samples than this cannot be told within a second.
-const SOON_TOLD: usize = 1_000_000;
+/// How often a wait looks whether Ctrl-C came.
+const LOOKS: Duration = Duration::from_millis(20);
 
 /// The flag, watched from now on.
 pub fn flag() -> &'static AtomicBool {
@@ -47,9 +48,25 @@ pub fn at_once() {
     flag();
 }
 
-/// From now on what was found is told after Ctrl-C, unless that would take long as there are so many samples.
-pub fn keeping(samples: usize) {
-    AT_ONCE.store(samples > SOON_TOLD, Ordering::Relaxed);
+/// From now on there is something that is told after Ctrl-C.
+pub fn keeping() {
+    AT_ONCE.store(false, Ordering::Relaxed);
+}
+
+/// What `work` brings, or nothing as soon as Ctrl-C comes: the work is then left to itself until the program ends.
+pub fn unless_interrupted<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Option<T> {
+    let (result, done) = mpsc::channel();
+    // Nobody listens any more where Ctrl-C came.
+    std::thread::spawn(move || result.send(work()).ok());
+    loop {
+        match done.recv_timeout(LOOKS) {
+            Ok(brought) => return Some(brought),
+            Err(mpsc::RecvTimeoutError::Timeout) if !STOP.load(Ordering::Relaxed) => {}
+            Err(_) => return None,
+        }
+    }
 }
 
 /// What ends a command early: Ctrl-C, or the end of its time.

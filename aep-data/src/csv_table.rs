@@ -18,7 +18,31 @@ pub(crate) struct CsvTable {
     columns: Vec<Column>,
     /// The first time stamp of each column that holds such, ns.
     stamps: Vec<Option<i64>>,
-    lines: Vec<u64>,
+    lines: Lines,
+}
+
+/// The line of each sample: nearly always the one after that of the sample before.
+#[derive(Default)]
+struct Lines {
+    samples: usize,
+    /// Samples whose line is not the next one, and that line.
+    jumps: Vec<(usize, u64)>,
+}
+
+impl Lines {
+    fn of(&self, sample: usize) -> Option<u64> {
+        let last = self.jumps.partition_point(|(begin, _)| *begin <= sample).checked_sub(1)?;
+        let (begin, line) = self.jumps[last];
+        (sample < self.samples).then_some(line + (sample - begin) as u64)
+    }
+
+    fn push(&mut self, line: u64) {
+        let next = self.samples.checked_sub(1).and_then(|last| Some(self.of(last)? + 1));
+        if next != Some(line) {
+            self.jumps.push((self.samples, line));
+        }
+        self.samples += 1;
+    }
 }
 
 impl CsvTable {
@@ -35,15 +59,18 @@ impl CsvTable {
             .flexible(true)
             .from_reader(bytes);
         let header = reader.byte_headers().map_err(|error| fail(unreadable(&error)))?.clone();
-        let columns = columns(&header);
+        // As much as there will be: growing step by step takes up to twice that. A number and its separator take two bytes.
+        let rows = bytes.iter().filter(|byte| **byte == b'\n').count();
+        let rows = rows.min(bytes.len() / (2 * header.len().max(1)));
+        let columns = columns(&header, rows);
         let stamps = vec![None; columns.len()];
-        let mut table = Self { path: path.to_owned(), columns, stamps, lines: vec![] };
+        let mut table = Self { path: path.to_owned(), columns, stamps, lines: Lines::default() };
         table.check_header(header.position().map(csv::Position::line))?;
         let mut record = ByteRecord::new();
         while reader.read_byte_record(&mut record).map_err(|error| fail(unreadable(&error)))? {
             table.push(&record, delimiter)?;
         }
-        if table.lines.is_empty() {
+        if table.lines.samples == 0 {
             return Err(fail(Problem::HeaderOnly));
         }
         Ok(table)
@@ -82,7 +109,7 @@ impl CsvTable {
             let problem = Problem::RaggedRow { fields: fields as u64, columns: columns as u64 };
             return Err(DataError::new(&self.path, problem).at_line(Some(line)));
         }
-        let sample = self.lines.len();
+        let sample = self.lines.samples;
         self.lines.push(line);
         let columns = self.columns.iter_mut().zip(&mut self.stamps);
         for ((column, first), field) in columns.zip(record) {
@@ -116,7 +143,7 @@ impl Table for CsvTable {
     }
 
     fn line(&self, sample: usize) -> Option<u64> {
-        self.lines.get(sample).copied()
+        self.lines.of(sample)
     }
 
     fn missing(&self, role: &str, column: Option<&str>) -> Problem {
@@ -131,9 +158,9 @@ impl Table for CsvTable {
     }
 }
 
-fn columns(header: &ByteRecord) -> Vec<Column> {
+fn columns(header: &ByteRecord, rows: usize) -> Vec<Column> {
     let names = header.iter().map(|name| String::from_utf8_lossy(name).into_owned());
-    names.map(|name| Column { name, values: vec![], bad: None }).collect()
+    names.map(|name| Column { name, values: Vec::with_capacity(rows), bad: None }).collect()
 }
 
 fn check_text(bytes: &[u8]) -> Result<(), Problem> {
@@ -204,4 +231,18 @@ fn is_missing(field: &[u8]) -> bool {
 
 fn unreadable(error: &csv::Error) -> Problem {
     Problem::Unreadable { message: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_know_their_lines_where_some_lines_are_none() {
+        let mut lines = Lines::default();
+        [3, 4, 7, 8, 9, 20].into_iter().for_each(|line| lines.push(line));
+        let told: Vec<Option<u64>> = (0..7).map(|sample| lines.of(sample)).collect();
+        assert_eq!(told, [Some(3), Some(4), Some(7), Some(8), Some(9), Some(20), None]);
+        assert_eq!(lines.jumps.len(), 3);
+    }
 }

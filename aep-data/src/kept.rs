@@ -22,7 +22,8 @@ pub struct LeftOut {
 pub(crate) struct Kept<'a> {
     table: &'a dyn Table,
     rows: usize,
-    left: Vec<usize>,
+    /// Those that are left, where some are not.
+    left: Option<Vec<usize>>,
 }
 
 impl<'a> Kept<'a> {
@@ -53,8 +54,8 @@ impl<'a> Kept<'a> {
             }
         }
         let rows = missing.len();
-        let left: Vec<usize> = (0..rows).filter(|k| !missing[*k]).collect();
-        let out = rows - left.len();
+        let out = missing.iter().filter(|missing| **missing).count();
+        let left = (out > 0).then(|| (0..rows).filter(|k| !missing[*k]).collect());
         if let Some((row, column)) = first.filter(|_| out as f64 > MOST * rows as f64) {
             let problem = Problem::TooManyMissing { missing: out, rows };
             return Err(DataError::new(path, problem)
@@ -66,19 +67,22 @@ impl<'a> Kept<'a> {
 
     /// Number of rows that are left.
     pub fn len(&self) -> usize {
-        self.left.len()
+        self.left.as_ref().map_or(self.rows, Vec::len)
     }
 
     /// Number of rows that were left out.
     pub fn left_out(&self) -> usize {
-        self.rows - self.left.len()
+        self.rows - self.len()
     }
 
     /// The same without these of its rows.
     pub fn without(mut self, rows: &[usize]) -> Self {
+        if rows.is_empty() {
+            return self;
+        }
         let mut out = rows.iter().copied().peekable();
         let mut at = 0;
-        self.left.retain(|_| {
+        self.left.get_or_insert_with(|| (0..self.rows).collect()).retain(|_| {
             let keeps = out.next_if_eq(&at).is_none();
             at += 1;
             keeps
@@ -95,17 +99,18 @@ impl Table for Kept<'_> {
     fn column(&self, name: &str) -> Result<Column, DataError> {
         let mut column = self.table.column(name)?;
         // Columns of another length are told where they are used.
-        if column.values.len() == self.rows && self.rows != self.left.len() {
-            column.values = self.left.iter().map(|k| column.values[*k]).collect();
+        if let Some(left) = self.left.as_ref().filter(|_| column.values.len() == self.rows) {
+            column.values = left.iter().map(|k| column.values[*k]).collect();
             if let Some(bad) = &mut column.bad {
-                bad.sample = self.left.partition_point(|k| *k < bad.sample);
+                bad.sample = left.partition_point(|k| *k < bad.sample);
             }
         }
         Ok(column)
     }
 
     fn line(&self, sample: usize) -> Option<u64> {
-        self.table.line(self.left.get(sample).copied().unwrap_or(sample))
+        let left = self.left.as_ref().and_then(|left| left.get(sample).copied());
+        self.table.line(left.unwrap_or(sample))
     }
 
     fn missing(&self, role: &str, column: Option<&str>) -> Problem {

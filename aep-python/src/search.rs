@@ -7,7 +7,7 @@ use std::time::Duration;
 use friction_ident::effects::beside::MODEL_FORCE;
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Known, Library};
-use missing_physics::measurement::cut_at_gaps;
+use missing_physics::measurement::looked_at;
 use missing_physics::{Event, Observer, Settings, Thresholds};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -134,10 +134,10 @@ impl Search {
     }
 }
 
-/// The model family of data; nothing is interpolated over long gaps.
+/// The model family of data, of a very long recording of pieces of it; nothing is interpolated over long gaps.
 pub fn family(data: &Data, options: &Options) -> PyResult<FrictionFamily> {
-    let whole = cut_at_gaps(&data.loaded.recording).map_err(bad_input)?;
-    FrictionFamily::new(&whole, options).map_err(|error| {
+    let used = looked_at(&data.loaded.recording).map_err(bad_input)?;
+    FrictionFamily::new(&used, options).map_err(|error| {
         let hint = "record a motion that reverses several times and covers slow and fast speeds";
         bad_input(format!("{}\n  {hint}", keywords(&error.to_string())))
     })

@@ -1,7 +1,7 @@
 //! How a search runs and where its results go.
 
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use friction_ident::family::{Decides, FrictionFamily};
 use missing_physics::report::Samples;
@@ -99,6 +99,12 @@ impl RunArgs {
             ..Settings::default()
         })
     }
+}
+
+/// The settings with what is left of the time limit, which began at `begun`.
+pub fn with_time_left(settings: Settings<'static>, begun: Instant) -> Settings<'static> {
+    let left = settings.time_limit.map(|limit| limit.saturating_sub(begun.elapsed()));
+    Settings { time_limit: left, ..settings }
 }
 
 /// When a command ends early.

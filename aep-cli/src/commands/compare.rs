@@ -16,6 +16,7 @@ use crate::failure::Failure;
 use crate::output::{self, heading};
 use crate::report::{Kind, Report};
 use crate::steps;
+use crate::stop;
 use crate::{outputs, series};
 
 /// Compare a model with a measurement: errors in several views and where it fails
@@ -61,6 +62,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             ("--series", args.series.path()),
         ],
     )?;
+    stop::at_once();
     let loaded = args.data.read()?;
     let models: Vec<Model> = if args.model.is_empty() {
         vec![steps::model_or_given(None, &loaded.recording)?]
@@ -76,6 +78,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let fit = |(path, model): (&PathBuf, &Model)| Ok((name(path), family.as_given(model)?));
     let fits: Vec<(String, Fit)> =
         paths.iter().zip(&models).map(fit).collect::<Result<_, Failure>>()?;
+    stop::keeping();
     let Some(compared) = family.compared(&fits, args.seed, watch.until())? else {
         return Err(Failure::bad_input("a model is needed: --model MODEL.json"));
     };

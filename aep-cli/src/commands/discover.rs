@@ -4,17 +4,20 @@ mod axes;
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
 
-use aep_data::Axes;
+use aep_data::{Axes, Loaded};
 use aep_studio::words;
+use friction_ident::Known;
 use friction_ident::family::{Decides, FrictionFamily};
-use missing_physics::{Discovery, Fitted, Thresholds, discover, model_of};
+use missing_physics::{Discovery, Fitted, Settings, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
-use missing_physics::report::{Combinations, Confirmed, Verdict};
+use missing_physics::report::{Combinations, Confirmed, Rung, Verdict};
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs, SeriesArgs};
+use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs, SeriesArgs, with_time_left};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
@@ -76,6 +79,11 @@ pub struct Args {
 }
 
 impl Args {
+    /// All files that are read.
+    fn inputs(&self) -> Vec<PathBuf> {
+        self.data.iter().chain(&self.validate).cloned().collect()
+    }
+
     /// The data, how they are read and what the base is, as they stand in a command.
     fn words(&self) -> String {
         let base = self.base.as_ref().map(|base| base.0.join(","));
@@ -107,9 +115,8 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if let Some(wanted) = &args.axes {
         return axes::run(args, wanted, global);
     }
-    let inputs: Vec<PathBuf> = args.data.iter().chain(&args.validate).cloned().collect();
     outputs::check(
-        &inputs,
+        &args.inputs(),
         &[
             ("--output", args.output.as_deref()),
             ("--json", args.results.json.as_deref()),
@@ -143,23 +150,28 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
+    let begun = Instant::now();
+    let known = args.known.known()?;
+    let family = Arc::new(steps::family(&loaded.recording, args.bandwidth, &known)?);
     progress.say("fitting the base model");
+    let settings = with_time_left(settings, begun);
     progress.within(settings.time_limit);
-    stop::keeping(loaded.recording.len());
-    let mut discovery = discover(&family, &settings, &mut progress)?;
+    let mut discovery = discover(&*family, &settings, &mut progress)?;
     let mut more = Vec::new();
     let mut confirmed = String::new();
     // Who has asked for an end wants no more than what there is.
     let go_on = !watch.is_interrupted();
-    if let Some(others) = others.as_ref().filter(|_| go_on) {
+    if let Some(others) = others.filter(|_| go_on) {
         progress.say("confirming it on the other recordings");
-        let other = steps::family(&others.recording, args.bandwidth, &args.known.known()?)?.with_stroke_of(&family);
-        steps::same_axes(&family, &other)?;
-        let rungs = missing_physics::confirm(&other, &discovery.ladder, &settings)?;
-        let found = Confirmed { recording: others.recording.name().to_owned(), rungs };
-        confirmed = output::confirmation(&discovery, &found);
-        discovery.confirmation = Some(found);
+        let (family, settings) = (Arc::clone(&family), settings.clone());
+        let (ladder, how) = (discovery.ladder.clone(), (args.bandwidth, known.clone()));
+        let work = move || self::confirmed(&family, &ladder, &others, &how, &settings);
+        if let Some(found) = stop::unless_interrupted(work) {
+            let found = found?;
+            let title = format!("On other recordings: {}", found.recording);
+            confirmed = output::confirmation(&discovery, &found, &title);
+            discovery.confirmation = Some(found);
+        }
     }
     let mut alarms = String::new();
     if args.surrogates.is_some() || args.experiment.is_some() {
@@ -169,7 +181,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         && let Some(last) = discovery.ladder.last()
     {
         let model = family.plant(last)?;
-        let options = steps::options(args.bandwidth, &args.known.known()?);
+        let options = steps::options(args.bandwidth, &known);
         let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
             progress.say(format!("surrogate {} of {count}", k + 1));
@@ -181,9 +193,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let mut proposal = Proposal::default();
     if let Some(path) = args.experiment.as_ref().filter(|_| go_on) {
         progress.say("looking for an experiment that tells them apart");
-        let rivals = discovery.ambiguous.first().map_or(&[][..], |choice| &choice.effects);
-        let last = discovery.ladder.last().map_or(&[][..], |rung| &rung.effects);
-        proposal = propose(&family, last, rivals, path, args.run.seed)?;
+        let rivals = discovery.ambiguous.first().map_or_else(Vec::new, |set| set.effects.clone());
+        let last = discovery.ladder.last().map_or_else(Vec::new, |rung| rung.effects.clone());
+        proposal = propose(&family, (last, rivals), path, args.run.seed)?;
         more.append(&mut proposal.more);
     }
     let friction = friction(&family, &discovery)?;
@@ -221,6 +233,20 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let story = story(&discovery, &settings.thresholds, &friction, args.run.explain);
     output::print(&(story + &confirmed + &alarms + &proposal.text + &files + &next))?;
     watch.end()
+}
+
+/// What other recordings, prepared with this bandwidth and what is known of parameters, say of a ladder.
+fn confirmed(
+    family: &FrictionFamily,
+    ladder: &[Rung],
+    others: &Loaded,
+    (bandwidth, known): &(Option<f64>, Known),
+    settings: &Settings<'_>,
+) -> Result<Confirmed, Failure> {
+    let other = steps::family(&others.recording, *bandwidth, known)?.with_stroke_of(family);
+    steps::same_axes(family, &other)?;
+    let rungs = missing_physics::confirm(&other, ladder, settings)?;
+    Ok(Confirmed { recording: others.recording.name().to_owned(), rungs })
 }
 
 fn save_model(

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 use crate::output::{self, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
-use crate::{outputs, series};
+use crate::{outputs, series, stop};
 
 /// Add an effect to a model, refit it, and print before and after
 #[derive(clap::Args)]
@@ -64,6 +64,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             ("--series", args.series.path()),
         ],
     )?;
+    stop::at_once();
     let loaded = args.data.read()?;
     let model = steps::model_or_given(args.model.as_deref(), &loaded.recording)?;
     let added = known(&args.add.to_lowercase())?;
@@ -80,6 +81,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?.or(model.known()))?;
     let before = family.as_given(&model)?;
+    stop::keeping();
     progress.say(format!("refitting with {added}"));
     let extended = missing_physics::extend(&family, &before, &added, args.seed, watch.until())?;
     let (after, discovery) = (extended.fit, extended.comparison);

@@ -18,7 +18,7 @@ use crate::output::{self, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report};
 use crate::steps::{self, ALGORITHMS};
-use crate::stop::Watch;
+use crate::stop::{self, Watch};
 use crate::{outputs, series};
 
 /// Identify the parameters of a model made of given effects
@@ -119,6 +119,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             ("--series", args.series.path()),
         ],
     )?;
+    stop::at_once();
     let loaded = args.data.read()?;
     let effects = args.data.mapping().base(args.effects.as_ref(), &loaded)?;
     let quiet = global.quiet || args.results.own_stdout();
@@ -126,6 +127,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?)?;
     progress.say(format!("identifying {}", effects.join(" + ")));
+    stop::keeping();
     let method = steps::method(&args.algorithm, 0)?;
     if args.horizon != Compared::Force {
         steps::needs_plant(&family)?;

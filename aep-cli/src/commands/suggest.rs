@@ -1,6 +1,8 @@
 //! `aep suggest`: which effect a model lacks.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
 
 use aep_studio::words;
 use friction_ident::family::Decides;
@@ -10,7 +12,7 @@ use missing_physics::report::Combinations;
 
 use crate::{outputs, steps};
 use crate::app::Global;
-use crate::args::{self, DataArgs, EffectNames, KnownArgs, OutputArgs, RunArgs};
+use crate::args::{self, DataArgs, EffectNames, KnownArgs, OutputArgs, RunArgs, with_time_left};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading};
@@ -73,15 +75,17 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let quiet = global.quiet || args.results.own_stdout();
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let family = steps::family(&loaded.recording, args.bandwidth, &args.known.known()?.or(model.known()))?;
+    let begun = Instant::now();
+    let known = args.known.known()?.or(model.known());
+    let family = Arc::new(steps::family(&loaded.recording, args.bandwidth, &known)?);
     family.belongs(&model)?;
     if args.experiment.is_some() {
         steps::needs_plant(&family)?;
     }
     progress.say("fitting the model");
+    let settings = with_time_left(settings, begun);
     progress.within(settings.time_limit);
-    stop::keeping(loaded.recording.len());
-    let discovery = suggest(&family, &settings, &mut progress)?;
+    let discovery = suggest(&*family, &settings, &mut progress)?;
     let candidates = discovery.ranking.first().cloned().unwrap_or_default();
     let better = settings.thresholds.better;
     let mut proposal = Proposal::default();
@@ -89,7 +93,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         progress.say("looking for an experiment that tells them apart");
         let rivals: Vec<String> =
             likely(&discovery, &settings).take(RIVALS).map(|candidate| candidate.effect.clone()).collect();
-        proposal = propose(&family, &settings.base, &rivals, path, args.run.seed)?;
+        proposal = propose(&family, (settings.base.clone(), rivals), path, args.run.seed)?;
     }
     drop(progress);
     let samples = args.results.samples(&family, &steps::ladder(&family, &discovery)?, Decides::Prediction);

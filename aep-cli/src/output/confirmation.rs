@@ -18,8 +18,8 @@ pub fn surrogates(found: &Surrogates) -> String {
     text
 }
 
-/// The rungs of a discovery on recordings that had no part in it.
-pub fn confirmation(discovery: &Discovery, confirmed: &Confirmed) -> String {
+/// The rungs of a discovery on recordings that had no part in it, under a title.
+pub fn confirmation(discovery: &Discovery, confirmed: &Confirmed, title: &str) -> String {
     let headings = words::confirmation_headings(discovery);
     let align = |heading: &Heading| if heading.numbers { Align::Right } else { Align::Left };
     let columns: Vec<(&str, Align)> =
@@ -28,8 +28,7 @@ pub fn confirmation(discovery: &Discovery, confirmed: &Confirmed) -> String {
     for row in words::confirmation_rows(discovery, confirmed) {
         table.row(row);
     }
-    let mut text =
-        heading(&format!("On other recordings: {}", confirmed.recording)) + &table.text();
+    let mut text = heading(title) + &table.text();
     // Writing to a string cannot fail.
     let _ = writeln!(text, " {}", dim(words::CONFIRMATION));
     for sentence in words::confirmations(confirmed) {

@@ -100,7 +100,32 @@ fn what_is_no_axis_is_told_with_what_was_looked_for() {
     desk.aep("discover arm.csv --axes 3").refused(&["no axis '3'", "1, 2"]);
     desk.aep("discover --axes all").refused(&["needs a file"]);
     desk.aep("discover arm.csv --axes all -o m.json").refused(&["several axes", "m_{}.json"]);
-    desk.aep("discover arm.csv --axes all --explain").refused(&["--explain is for one axis"]);
+    let line = "discover arm.csv --axes all --surrogates 3";
+    desk.aep(line).refused(&["--surrogates is for one axis"]);
+    // The recordings that are to confirm it must have the same axes.
+    desk.aep("discover arm.csv --axes all --validate c/recording.csv").refused(&["no axes found"]);
+}
+
+#[test]
+fn other_recordings_confirm_each_axis_and_what_was_compared_is_told_of_each() {
+    let desk = Desk::new();
+    desk.write("arm.csv", machine(&desk, &["stribeck", "nothing"]));
+    let line = "discover arm.csv --axes all --hold zero-order --most-effects 1 --time-limit none";
+    let run = desk.aep(&format!("{line} --validate arm.csv --explain --json a.json"));
+    for axis in [1, 2] {
+        for part in [
+            format!("What was compared: axis {axis}"),
+            format!("axis {axis}, on other recordings: arm.csv"),
+        ] {
+            assert!(run.done().contains(&part), "'{part}' is not in\n{}", run.out);
+        }
+    }
+    let json = desk.json("a.json");
+    checked(&json);
+    let confirmation = &json["axes"][0]["discovery"]["confirmation"];
+    assert_eq!(confirmation["recording"], "arm.csv");
+    // Confirmed on itself it holds.
+    assert_eq!(confirmation["rungs"][1]["holds"], true, "{confirmation}");
 }
 
 #[cfg(unix)]
@@ -111,7 +136,7 @@ fn after_ctrl_c_the_axes_that_are_done_are_kept() {
     let line = "discover arm.csv --threads 1 --axes all --hold zero-order --time-limit none";
     let run = desk.interrupted(&format!("{line} --json a.json"), 1.0);
     assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
-    assert!(run.out.contains("not begun"), "{}", run.out);
+    assert!(run.out.contains("not done"), "{}", run.out);
     let json = desk.json("a.json");
     checked(&json);
     assert_eq!(json["interrupted"], true);

@@ -137,7 +137,7 @@ fn after_ctrl_c_discover_tells_what_it_has() {
     let desk = Desk::new();
     // So much to search that it is still on when it is stopped.
     let line = "discover --time-limit none --better 1 --beam 9 --most-effects 9 --threads 1 --json out.json";
-    let run = desk.interrupted(line, 1.0);
+    let run = desk.interrupted(line, 3.0);
     assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
     assert!(run.out.contains("The ladder"), "{}", run.out);
     assert!(!run.out.contains("MISSING EFFECT"), "{}", run.out);

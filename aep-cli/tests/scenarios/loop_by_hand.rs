@@ -145,7 +145,7 @@ fn after_ctrl_c_identify_saves_what_it_has() {
     // Many shapes, so that the search is still on when it is stopped.
     let effects = "coulomb,viscous,offset,stribeck,frictional-memory,presliding";
     let run =
-        desk.interrupted(&format!("identify c/recording.csv --effects {effects} -o m.json"), 1.0);
+        desk.interrupted(&format!("identify c/recording.csv --effects {effects} -o m.json"), 2.0);
     assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
     assert!(desk.path("m.json").exists() && run.out.contains("stopped early"), "{}", run.out);
 }

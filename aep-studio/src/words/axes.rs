@@ -23,8 +23,8 @@ pub enum AxisResult<'a> {
     Found(&'a Discovery),
     /// It could not be.
     Refused(&'a str),
-    /// It was not begun before the end.
-    NotBegun,
+    /// Its search was not done before the end.
+    NotDone,
 }
 
 /// The cells of an axis.
@@ -32,10 +32,10 @@ pub fn axis_row(name: &str, result: AxisResult<'_>) -> [String; 7] {
     let dash = || "-".to_owned();
     let discovery = match result {
         AxisResult::Found(discovery) => discovery,
-        AxisResult::Refused(_) | AxisResult::NotBegun => {
+        AxisResult::Refused(_) | AxisResult::NotDone => {
             let said = match result {
                 AxisResult::Refused(why) => format!("not searched: {why}"),
-                _ => "not begun".to_owned(),
+                _ => "not done".to_owned(),
             };
             return [name.to_owned(), dash(), dash(), dash(), dash(), dash(), said];
         }

@@ -24,8 +24,12 @@ pub fn remark(remark: &Remark) -> String {
             because.as_ref().map_or_else(String::new, |why| format!(" ({})", no_cause(why))),
         ),
         Remark::Unconfirmed { share } => format!(
-            "Time ran out: what is said was found on parts that are {} of the recording, and was not asked of all of it.",
+            "Time ran out: what is said was found on parts that are {} of what was looked at, and was not asked of all of it.",
             percent(*share)
+        ),
+        Remark::InPieces { samples, looked_at, pieces } => format!(
+            "Of {samples} samples {looked_at} were looked at, in {pieces} pieces spread over the recording: what happens \
+             only between them was not looked for."
         ),
         Remark::SecondLookCut => {
             "Time ran out before it was known whether other effects, which hide each other, do as much."

@@ -20,6 +20,7 @@ mod in_time;
 mod law;
 mod limits;
 mod own;
+mod part;
 mod plots;
 mod points;
 mod preparation;
@@ -95,6 +96,8 @@ pub struct FrictionFamily {
     other_hold: Option<Box<Self>>,
     /// The force that another model gives, where the recording has one: the models here stand beside it.
     given: Option<given::Given>,
+    /// The same of pieces of a long recording.
+    part: Option<Box<Self>>,
     ahead: Option<ahead::OneAhead>,
     thinned: Option<ahead::OneAhead>,
     top_speed: f64,
@@ -107,13 +110,7 @@ impl FrictionFamily {
     /// # Errors
     /// A channel is missing or constant, or too little of the recording moves.
     pub fn new(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
-        let is_given = recording.channel(MODEL_FORCE).is_some();
-        match recording.known_hold() {
-            // Beside a given force the shift in time of the two is fitted in its place.
-            _ if is_given => Self::as_recorded(recording, options),
-            Some(_) => Self::as_recorded(recording, options),
-            None => hold::decided(recording, options),
-        }
+        Self::of_any_length(recording, options)
     }
 
     /// What was decided about the force between samples, where the recording does not say it.
@@ -173,6 +170,7 @@ impl FrictionFamily {
             stroke,
             hold: None,
             other_hold: None,
+            part: None,
             given: None,
             ahead: None,
             thinned: None,
@@ -603,12 +601,21 @@ impl ModelFamily for FrictionFamily {
         Some((self.other_hold.as_deref()?, self.hold?.nats))
     }
 
-    fn reading(&self) -> Option<Remark> {
+    fn reading(&self) -> Vec<Remark> {
         let input = self.quantity().name;
-        if self.given.is_some() {
-            return Some(Remark::Given { input, most_shift: given::MOST_SHIFT });
-        }
-        self.hold.map(|hold| hold.remark(input))
+        let read = if self.given.is_some() {
+            Some(Remark::Given { input, most_shift: given::MOST_SHIFT })
+        } else {
+            self.hold.map(|hold| hold.remark(input))
+        };
+        let (looked_at, pieces) = (self.recording.len(), self.recording.segments().len());
+        let taken_from = self.recording.taken_from();
+        let in_pieces = taken_from.map(|samples| Remark::InPieces { samples, looked_at, pieces });
+        read.into_iter().chain(in_pieces).collect()
+    }
+
+    fn in_part(&self) -> Option<&Self> {
+        self.part.as_deref()
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {

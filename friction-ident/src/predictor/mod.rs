@@ -20,6 +20,7 @@ mod surrogate;
 use std::ops::Range;
 use std::sync::OnceLock;
 
+use missing_physics::measurement::spread;
 use missing_physics::{Hold, Recording};
 use rayon::prelude::*;
 
@@ -50,8 +51,6 @@ const REST: f64 = 0.5;
 const LIMIT: f64 = 1e4;
 /// Length of the pieces of a thinned recording, s.
 const PIECE: f64 = 1.0;
-/// Fractional part of the golden ratio: steps of it never fall in step with a cycle.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Fewest and most plants that advance together.
 const LANES: (usize, usize) = (8, 32);
 /// Why samples do not count.
@@ -169,22 +168,11 @@ impl Predictor {
             return None;
         }
         let share = most as f64 / all as f64;
-        let mut parts: Vec<Range<usize>> = Vec::new();
-        let mut number = 0.0f64;
-        for segment in &self.segments {
+        let parts = spread(&self.segments, share, |segment| {
             let interval =
                 (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
-            let length = ((PIECE / interval) as usize).clamp(50, most / 4);
-            let mut start = segment.start;
-            while start < segment.end {
-                let end = (start + length).min(segment.end);
-                number += 1.0;
-                if (number * GOLDEN).fract() < share && end - start > length / 2 {
-                    parts.push(start..end);
-                }
-                start = end;
-            }
-        }
+            ((PIECE / interval) as usize).clamp(50, most / 4)
+        });
         let mut end = 0;
         let segments = parts.iter().map(|part| {
             let start = end;

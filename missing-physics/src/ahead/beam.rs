@@ -118,7 +118,15 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// The base model at its best, from a start that need not be near.
     pub fn base(&self, start: Fitted) -> Node {
         // Without a base model nothing can be said, however little time there is.
-        let fitter = Fitter::new(self.family, self.ahead);
+        self.base_by(Fitter::new(self.family, self.ahead), start)
+    }
+
+    /// The same as far as time allows, where something can be said without.
+    pub fn base_in_time(&self, start: Fitted) -> Node {
+        self.base_by(self.fitter(), start)
+    }
+
+    fn base_by(&self, fitter: Fitter<'_, F>, start: Fitted) -> Node {
         let half = self.ahead.settings() / 2;
         // From much process noise to little: the valley narrows.
         let mut node = fitter.fit(start, half - 1, BASE);

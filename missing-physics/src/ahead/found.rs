@@ -159,6 +159,26 @@ impl Found {
         }
         let before = std::iter::once(&self.base).chain(&self.rungs);
         self.gains = before.zip(&self.rungs).map(|(a, b)| comparison.compare(a, b)).collect();
+        if thresholds.most == 0 {
+            // Nothing is to be added: what candidates gain is all that is told.
+            let fitted = |start: &Fitted| {
+                let node = whole(start);
+                let nats = comparison.compare(&self.base, &node).nats;
+                (node.model, nats)
+            };
+            let gain = |term: usize, model: &Fitted| {
+                let found = fitted(model);
+                let place = model.terms.iter().position(|other| *other == term);
+                let Some(place) = place.filter(|_| found.1 < 0.0) else { return found };
+                // A part led to another valley: with a term more a model can do no worse.
+                let values = &model.values[model.range(family, place)];
+                let again = fitted(&self.base.model.with(term, values));
+                if again.1 > found.1 { again } else { found }
+            };
+            if let Some(ranked) = self.ranking.first_mut() {
+                ranked.ask(thresholds.better, gain);
+            }
+        }
         // What was cut short is no fit.
         if stop() {
             return None;
@@ -258,6 +278,25 @@ pub struct Ranked {
     pub points: f64,
 }
 
+/// Candidates of which it must be known what they gain.
+const ASKED: usize = 3;
+
+impl Ranked {
+    /// Replaces what the first candidates promise, as far as that is more than `least`, by what `gain` makes of them,
+    /// until it is known of those that are first then.
+    fn ask(&mut self, least: f64, gain: impl Fn(usize, &Fitted) -> (Fitted, f64)) {
+        let mut asked = Vec::new();
+        loop {
+            let first = self.rows.iter_mut().take(ASKED);
+            let mut open = first.filter(|row| row.2 > least && !asked.contains(&row.0));
+            let Some(row) = open.next() else { break };
+            asked.push(row.0);
+            (row.1, row.2) = gain(row.0, &row.1);
+            self.rows.sort_by(|a, b| b.2.total_cmp(&a.2));
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
@@ -354,6 +393,27 @@ mod tests {
         assert!(!found.rungs[0].model.terms.contains(&BEAT));
         assert_eq!(found.remarks, [Remark::FoundInPartOnly { effect: "beat".into() }]);
         assert!(found.gains[0].nats > 20.0 && found.complete);
+    }
+
+    #[test]
+    fn where_nothing_is_to_be_added_candidates_are_told_by_what_they_gain_on_all_of_the_recording()
+    {
+        let whole = Plant::new(1, &[(WAVE, &[0.05])]);
+        let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
+        let row = |terms: &[(usize, &[f64])], nats| (terms[0].0, Plant::model(terms), nats);
+        // What a part promised.
+        let rows = vec![row(&[(BEAT, &[0.03])], 700.0), row(&[(WAVE, &[0.05])], 600.0)];
+        let ranking = vec![Ranked { rows, chance: Chance::default(), points: 1000.0 }];
+        let found = Found { ranking, ..Found::of(node(&[])) };
+        let thresholds = Thresholds { most: 0, better: 20.0, ..Thresholds::default() };
+        let told = found.clone().confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
+        let [(first, _, gain), (second, _, nothing)] = &told.ranking[0].rows[..] else { panic!() };
+        assert_eq!((*first, *second), (WAVE, BEAT));
+        assert!(*gain > 1000.0 && *nothing < 20.0, "{gain} {nothing}");
+        // A search that adds tells of its rungs.
+        let thresholds = Thresholds { most: 1, ..thresholds };
+        let told = found.confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
+        assert_eq!(told.ranking[0].rows[0].2, 700.0);
     }
 
     #[test]

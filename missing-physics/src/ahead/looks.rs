@@ -289,15 +289,19 @@ impl<'a> Run<'a> {
     ) -> Begun<'a, F> {
         let there = there.map(|(there, nats)| (there, *nats));
         Begun {
-            here: self.pursuit(here),
-            there: there.map(|(there, nats)| (self.pursuit(there), nats)),
+            here: self.pursuit(here, Search::base),
+            there: there.map(|(there, nats)| (self.pursuit(there, Search::base_in_time), nats)),
             thresholds: self.thresholds.in_part(here.whole.asked()),
             stop: self.stop,
             until: self.settings.time_limit.and_then(|limit| self.started.checked_add(limit)),
         }
     }
 
-    fn pursuit<F: ModelFamily + ?Sized>(&self, reading: &'a Reading<'a, F>) -> Pursuit<'a, F> {
+    fn pursuit<F: ModelFamily + ?Sized>(
+        &self,
+        reading: &'a Reading<'a, F>,
+        base_of: fn(&Search<'a, F>, Fitted) -> Node,
+    ) -> Pursuit<'a, F> {
         let (family, ahead) = (reading.family, reading.searched());
         let (base, excluded) = self.sets;
         let candidates: Vec<usize> = (0..family.terms().len())
@@ -313,10 +317,12 @@ impl<'a> Run<'a> {
         let base = if let Some(near) = &self.settings.start {
             search.base_near(near.clone())
         } else {
-            let everywhere = vec![1.0; family.target().len()];
-            let start = fit::identify(family, base, &everywhere, self.settings.seed);
+            // A start needs no more than a part.
+            let near = family.in_part().unwrap_or(family);
+            let everywhere = vec![1.0; near.target().len()];
+            let start = fit::identify(near, base, &everywhere, self.settings.seed);
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
-            search.base(start.fit.model)
+            base_of(&search, start.fit.model.within(family))
         };
         let climb = search.begin(base);
         Pursuit { reading, search, climb }

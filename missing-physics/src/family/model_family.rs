@@ -126,8 +126,14 @@ pub trait ModelFamily: Sync {
         None
     }
 
-    /// How the recording was read where nobody stated it.
-    fn reading(&self) -> Option<Remark> {
+    /// How the recording was read: what nobody stated, what was left out.
+    fn reading(&self) -> Vec<Remark> {
+        Vec::new()
+    }
+
+    /// The same family on a part of a long recording, near whose base model that of all of it is looked for; nothing where
+    /// the whole is short enough.
+    fn in_part(&self) -> Option<&Self> {
         None
     }
 

@@ -37,4 +37,15 @@ impl Fitted {
             term.parameters.iter().map(move |parameter| (term, parameter))
         })
     }
+
+    /// This model with every value within the limits of the family.
+    #[must_use]
+    pub fn within<F: ModelFamily + ?Sized>(mut self, family: &F) -> Self {
+        let limits: Vec<(f64, f64)> =
+            self.parameters(family).map(|(_, p)| (p.lower, p.upper)).collect();
+        for (value, (lower, upper)) in self.values.iter_mut().zip(limits) {
+            *value = value.clamp(lower, upper);
+        }
+        self
+    }
 }

@@ -3,8 +3,10 @@
 
 pub mod check;
 pub mod period;
+mod pieces;
 pub mod quantity;
 mod recording;
 
 pub use check::{DataCheck, check, cut_at_gaps};
+pub use pieces::{MOST_LOOKED_AT, in_pieces, looked_at, spread};
 pub use recording::{Channel, Hold, MIN_SAMPLES, Recording, RecordingError};

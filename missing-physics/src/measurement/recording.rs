@@ -100,6 +100,8 @@ pub struct Recording {
     interval: f64,
     /// Nothing where nobody stated it.
     hold: Option<Hold>,
+    /// Samples of the recording that this one is a part of.
+    taken_from: Option<usize>,
 }
 
 impl Recording {
@@ -143,7 +145,15 @@ impl Recording {
             check_increasing(&time, range)?;
         }
         let interval = interval(&time, &segments);
-        Ok(Self { name: name.into(), time, channels, segments, interval, hold: None })
+        Ok(Self {
+            name: name.into(),
+            time,
+            channels,
+            segments,
+            interval,
+            hold: None,
+            taken_from: None,
+        })
     }
 
     /// Says how the input acts between samples.
@@ -151,6 +161,34 @@ impl Recording {
     pub fn with_hold(mut self, hold: Hold) -> Self {
         self.hold = Some(hold);
         self
+    }
+
+    /// These parts of it, in order, each a segment of its own.
+    ///
+    /// # Errors
+    /// They have too few samples together.
+    pub(super) fn of_parts(&self, parts: &[Range<usize>]) -> Result<Self, RecordingError> {
+        let picked = |values: &[f64]| -> Vec<f64> {
+            parts.iter().flat_map(|part| values[part.clone()].iter().copied()).collect()
+        };
+        let channels = self.channels.iter();
+        let channels =
+            channels.map(|c| Channel::new(c.name.clone(), c.unit.clone(), picked(&c.values)));
+        let segment = (0i64..).zip(parts).flat_map(|(k, part)| std::iter::repeat_n(k, part.len()));
+        let (time, segment) = (picked(&self.time), segment.collect());
+        let part = Self::with_segments(self.name.clone(), time, channels.collect(), segment)?;
+        Ok(Self { taken_from: Some(self.len()), ..part.with_hold_of(self) })
+    }
+
+    /// The same with the number of samples that `other` was taken from.
+    #[must_use]
+    pub(super) fn taken_like(self, other: &Self) -> Self {
+        Self { taken_from: other.taken_from, ..self }
+    }
+
+    /// Number of samples of the recording that this one is pieces of; nothing where it is all there is.
+    pub fn taken_from(&self) -> Option<usize> {
+        self.taken_from
     }
 
     /// Where it comes from, e.g. the file's name.

@@ -38,6 +38,15 @@ pub enum Remark {
         /// Share of the recording that was searched.
         share: f64,
     },
+    /// Of a very long recording pieces spread over it were looked at.
+    InPieces {
+        /// Samples of all of it.
+        samples: usize,
+        /// Samples of the pieces.
+        looked_at: usize,
+        /// Number of the pieces.
+        pieces: usize,
+    },
     /// Effects come nearest and are not the cause.
     NotTheCause {
         /// The effects.

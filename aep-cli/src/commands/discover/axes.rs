@@ -2,25 +2,31 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
 
 use aep_data::{Axes, Loaded, PLACE};
 use aep_studio::report::AxisPage;
 use aep_studio::words::{self, AXES_HEADINGS, AxisResult, axis_row};
 use missing_physics::measurement::check::{DataCheck, Severity, check};
 use missing_physics::report::{Combinations, Samples};
-use missing_physics::{Discovery, discover};
+use missing_physics::{Discovery, Thresholds, discover};
 use serde_json::{Value, json};
 
-use super::{Args, friction, save_model, save_series};
-use crate::app::Global;
-use crate::args::axis_path;
+use super::{Args, confirmed, friction, save_model, save_series};
+use crate::app::{self, Global};
+use crate::args::{axis_path, with_time_left};
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading, written};
 use crate::progress::Progress;
 use crate::report::{Kind, Report, command, source};
-use crate::stop::Watch;
+use crate::stop::{self, Watch};
 use crate::{outputs, steps};
+
+/// How often it is looked whether all axes are done.
+const LOOKS: Duration = Duration::from_millis(20);
+/// How long an axis that is searched may take to end after Ctrl-C.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// `all`, or numbers and names.
 pub fn wanted(text: &str) -> Result<Axes, String> {
@@ -38,23 +44,26 @@ pub fn wanted(text: &str) -> Result<Axes, String> {
 /// An axis that was searched.
 struct Searched {
     discovery: Discovery,
+    thresholds: Thresholds,
     friction: Combinations,
     json: Value,
     files: String,
 }
 
-/// An axis and what became of it; nothing where it was not begun.
+/// An axis and what became of it; nothing where it is not done.
 struct Axis {
     name: String,
     loaded: Loaded,
+    /// Other recordings of it, which are to confirm what is found.
+    others: Option<Loaded>,
     check: DataCheck,
-    found: Option<Result<Searched, Failure>>,
+    found: OnceLock<Result<Searched, Failure>>,
 }
 
 impl Axis {
     fn result(&self) -> AxisResult<'_> {
-        match &self.found {
-            None => AxisResult::NotBegun,
+        match self.found.get() {
+            None => AxisResult::NotDone,
             Some(Err(failure)) => AxisResult::Refused(&failure.what),
             Some(Ok(searched)) => AxisResult::Found(&searched.discovery),
         }
@@ -64,43 +73,61 @@ impl Axis {
 /// Runs the command for these axes.
 pub fn run(args: &Args, wanted: &Axes, global: Global) -> Result<(), Failure> {
     refuse(args)?;
+    stop::at_once();
     let read = args.mapping.read_axes(&args.data, wanted)?;
-    let mut axes: Vec<Axis> = read
-        .axes
-        .into_iter()
-        .map(|(name, loaded)| Axis { name, check: check(&loaded.recording), loaded, found: None })
-        .collect();
+    let mut others = others(args, &read.axes)?.into_iter();
+    let axis = |(name, loaded): (String, Loaded)| {
+        let check = check(&loaded.recording);
+        Axis { name, loaded, others: others.next(), check, found: OnceLock::new() }
+    };
+    let axes: Vec<Axis> = read.axes.into_iter().map(axis).collect();
     check_files(args, &axes)?;
     let watch = Watch::new(None);
     let quiet = global.quiet || args.results.own_stdout();
     if !quiet {
         output::print(&read_from(&axes, &read.without_force))?;
     }
-    search_all(args, &mut axes, watch, quiet)?;
+    stop::keeping();
+    search_all(args, &axes, watch, quiet)?;
+    tell(args, &axes, watch, quiet)
+}
+
+/// The same axes in the recordings that are to confirm what is found; none where there are no such recordings.
+fn others(args: &Args, axes: &[(String, Loaded)]) -> Result<Vec<Loaded>, Failure> {
+    if args.validate.is_empty() {
+        return Ok(Vec::new());
+    }
+    let names = Axes::Named(axes.iter().map(|(name, _)| name.clone()).collect());
+    let read = args.mapping.read_axes(&args.validate, &names)?;
+    Ok(read.axes.into_iter().map(|(_, loaded)| loaded).collect())
+}
+
+/// Tells of the axes that are done, and writes the files.
+fn tell(args: &Args, axes: &[Axis], watch: Watch, quiet: bool) -> Result<(), Failure> {
+    let failures = axes.iter().map(|axis| axis.found.get().and_then(|found| found.as_ref().err()));
     // Where no axis could be searched, the first reason is the reason.
-    if axes.iter().all(|axis| matches!(axis.found, Some(Err(_)))) {
-        let first = axes.swap_remove(0);
-        if let Some(Err(failure)) = first.found {
-            return Err(failure);
-        }
+    if let Some(failures) = failures.collect::<Option<Vec<&Failure>>>()
+        && let Some(first) = failures.first()
+    {
+        return Err((*first).clone());
     }
     let mut files = String::new();
     if let Some(path) = &args.results.json {
-        output::save_json(path, &in_json(&axes, watch))?;
+        output::save_json(path, &in_json(axes, watch))?;
         files += &written("results", path);
     }
     if let Some(path) = &args.results.html {
-        output::save(path, &page(args, &axes))?;
+        output::save(path, &page(args, axes))?;
         files += &written("report", path);
     }
-    for axis in &axes {
-        if let Some(Ok(searched)) = &axis.found {
+    for axis in axes {
+        if let Some(Ok(searched)) = axis.found.get() {
             files += &searched.files;
         }
     }
     if !quiet {
         let files = if files.is_empty() { files } else { format!("\n{files}") };
-        output::print(&(table(&axes) + &files + &next(args, &axes)))?;
+        output::print(&(more(args, axes) + &table(axes) + &files + &next(args, axes)))?;
     }
     watch.end()
 }
@@ -112,10 +139,8 @@ fn refuse(args: &Args) -> Result<(), Failure> {
             .with_hint("aep discover FILE --axes all"));
     }
     let alone = [
-        ("--validate", !args.validate.is_empty()),
         ("--surrogates", args.surrogates.is_some()),
         ("--experiment", args.experiment.is_some()),
-        ("--explain", args.run.explain),
     ];
     if let Some((flag, _)) = alone.iter().find(|(_, given)| *given) {
         let hint = "leave --axes out and say the columns of one: --force tau_1 --position q_1";
@@ -145,18 +170,19 @@ fn check_files(args: &Args, axes: &[Axis]) -> Result<(), Failure> {
         vec![("--json", args.results.json.as_deref()), ("--html", args.results.html.as_deref())];
     files.extend(models.iter().map(|path| ("--output", Some(path.as_path()))));
     files.extend(points.iter().map(|path| ("--series", Some(path.as_path()))));
-    outputs::check(&args.data, &files)
+    outputs::check(&args.inputs(), &files)
 }
 
 /// Searches every axis. As many at once as there are threads, each with its share of them: a search shares its work among
-/// threads of its own only, so that none waits for another axis while its time runs.
-fn search_all(args: &Args, axes: &mut [Axis], watch: Watch, quiet: bool) -> Result<(), Failure> {
+/// threads of its own only, so that none waits for another axis while its time runs. After Ctrl-C those that are done are
+/// told at once, and the program ends.
+fn search_all(args: &Args, axes: &[Axis], watch: Watch, quiet: bool) -> Result<(), Failure> {
     let threads = rayon::current_num_threads().max(1);
     let workers = threads.min(axes.len());
     let next = AtomicUsize::new(0);
     let progress = Progress::new(quiet);
     let running: Mutex<Vec<String>> = Mutex::default();
-    let tell = |name: &str, begins: bool| {
+    let said = |name: &str, begins: bool| {
         let mut running = running.lock().unwrap_or_else(PoisonError::into_inner);
         if begins {
             running.push(name.to_owned());
@@ -172,35 +198,49 @@ fn search_all(args: &Args, axes: &mut [Axis], watch: Watch, quiet: bool) -> Resu
         .map(|share| rayon::ThreadPoolBuilder::new().num_threads(share).build())
         .collect();
     let pools = pools.map_err(|error| Failure::failed(format!("cannot start threads: {error}")))?;
-    let found: Vec<Mutex<Option<Result<Searched, Failure>>>> =
-        axes.iter().map(|_| Mutex::default()).collect();
-    let shared: &[Axis] = axes;
+    let working = AtomicUsize::new(workers);
     std::thread::scope(|scope| {
         for pool in &pools {
             scope.spawn(|| {
                 while !watch.is_interrupted() {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(axis) = shared.get(index) else { break };
-                    tell(&axis.name, true);
-                    let result = pool.install(|| search(args, axis));
-                    *found[index].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
-                    tell(&axis.name, false);
+                    let Some(axis) = axes.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+                    said(&axis.name, true);
+                    // Nobody else has set it.
+                    let _ = axis.found.set(pool.install(|| search(args, axis, watch)));
+                    said(&axis.name, false);
                 }
+                working.fetch_sub(1, Ordering::Relaxed);
             });
         }
+        while working.load(Ordering::Relaxed) > 0 {
+            std::thread::sleep(LOOKS);
+            if watch.is_interrupted() {
+                // A search that knows when to end does so now; what takes longer is left.
+                let until = Instant::now() + PATIENCE;
+                while working.load(Ordering::Relaxed) > 0 && Instant::now() < until {
+                    std::thread::sleep(LOOKS);
+                }
+                progress.hide();
+                app::end(tell(args, axes, watch, quiet));
+            }
+        }
     });
-    for (axis, found) in axes.iter_mut().zip(found) {
-        axis.found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-    }
     Ok(())
 }
 
-fn search(args: &Args, axis: &Axis) -> Result<Searched, Failure> {
+fn search(args: &Args, axis: &Axis, watch: Watch) -> Result<Searched, Failure> {
     let recording = &axis.loaded.recording;
     let base = args.mapping.base(args.base.as_ref(), &axis.loaded)?;
     let settings = args.run.settings(base)?;
-    let family = steps::family(recording, args.bandwidth, &args.known.known()?)?;
-    let discovery = discover(&family, &settings, &mut ())?;
+    let begun = Instant::now();
+    let how = (args.bandwidth, args.known.known()?);
+    let family = steps::family(recording, how.0, &how.1)?;
+    let settings = with_time_left(settings, begun);
+    let mut discovery = discover(&family, &settings, &mut ())?;
+    if let Some(others) = axis.others.as_ref().filter(|_| !watch.is_interrupted()) {
+        let found = confirmed(&family, &discovery.ladder, others, &how, &settings)?;
+        discovery.confirmation = Some(found);
+    }
     let friction = friction(&family, &discovery)?;
     let report = Report {
         kind: Kind::Discovery,
@@ -220,7 +260,7 @@ fn search(args: &Args, axis: &Axis) -> Result<Searched, Failure> {
     if let Some(path) = args.series.of_axis(&axis.name) {
         files += &save_series(&path, &family, &discovery)?;
     }
-    Ok(Searched { discovery, friction, json, files })
+    Ok(Searched { discovery, thresholds: settings.thresholds, friction, json, files })
 }
 
 /// Which columns were taken for which axis.
@@ -268,6 +308,23 @@ fn table(axes: &[Axis]) -> String {
     heading("What each axis lacks") + &table.text()
 }
 
+/// What was compared, where that is asked, and what other recordings say, axis by axis.
+fn more(args: &Args, axes: &[Axis]) -> String {
+    let mut text = String::new();
+    for axis in axes {
+        let Some(Ok(Searched { discovery, thresholds, .. })) = axis.found.get() else { continue };
+        if args.run.explain && !discovery.decisions.is_empty() {
+            text += &heading(&format!("What was compared: axis {}", axis.name));
+            text += &output::compared(discovery, thresholds);
+        }
+        if let Some(found) = &discovery.confirmation {
+            let on = format!("axis {}, on other recordings: {}", axis.name, found.recording);
+            text += &output::confirmation(discovery, found, &on);
+        }
+    }
+    text
+}
+
 fn in_json(axes: &[Axis], watch: Watch) -> Value {
     let each = axes.iter().map(|axis| {
         let columns = axis.loaded.origins.iter().map(
@@ -276,11 +333,11 @@ fn in_json(axes: &[Axis], watch: Watch) -> Value {
         json!({
             "axis": axis.name,
             "columns": columns.collect::<Vec<Value>>(),
-            "discovery": match &axis.found {
+            "discovery": match axis.found.get() {
                 Some(Ok(searched)) => searched.json.clone(),
                 _ => Value::Null,
             },
-            "failure": match &axis.found {
+            "failure": match axis.found.get() {
                 Some(Err(failure)) => Some(&failure.what),
                 _ => None,
             },
@@ -296,7 +353,7 @@ fn page(args: &Args, axes: &[Axis]) -> String {
         .map(|axis| {
             let mut source = source(&axis.loaded);
             source.name = format!("{}, axis {}", source.name, axis.name);
-            if let Some(Ok(searched)) = &axis.found {
+            if let Some(Ok(searched)) = axis.found.get() {
                 source.together = searched.friction.clone();
             }
             if let Ok(settings) = &settings {
@@ -322,7 +379,7 @@ fn next(args: &Args, axes: &[Axis]) -> String {
     if args.results.html.is_some() {
         return String::new();
     }
-    let Some(axis) = axes.iter().find(|axis| matches!(&axis.found, Some(Ok(s)) if !s.discovery.added.is_empty()))
+    let Some(axis) = axes.iter().find(|axis| matches!(axis.found.get(), Some(Ok(s)) if !s.discovery.added.is_empty()))
     else {
         return String::new();
     };

@@ -23,7 +23,7 @@ pub fn cut_at_gaps(recording: &Recording) -> Result<Recording, RecordingError> {
     }
     let channels = recording.channels().to_vec();
     let cut = Recording::with_segments(recording.name(), time.to_vec(), channels, segment)?;
-    Ok(cut.with_hold_of(recording))
+    Ok(cut.with_hold_of(recording).taken_like(recording))
 }
 
 #[cfg(test)]
