@@ -20,7 +20,7 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 /// Colours of the style sheet for curves with names of their own.
-const OTHERS: [&str; 6] = ["c3", "c4", "c0", "c6", "c7", "c5"];
+const OTHERS: [&str; 6] = ["c3", "c4", "c6", "c7", "c0", "c5"];
 
 /// What is known of the curve of the same label: an area between two lines.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -109,6 +109,10 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             let what = "--trace, --checkpoint and --resume follow a single run";
             return Err(Failure::bad_input(what).with_hint("name one optimizer by --algorithm"));
         };
+        if args.html.is_some() {
+            return Err(Failure::bad_input("a single run has no page")
+                .with_hint("leave --html out: --trace run.csv has every generation"));
+        }
         let run = (budget(args, target), args.seed);
         let problem = if args.shift { problem.with_random_shift(args.seed) } else { problem };
         return optimize_run::run(&args.single, &**method, &problem, run, global);

@@ -5,12 +5,16 @@ const toPaper = () => {
     folded.open = true;
     folded.dataset.printed = "yes";
   });
+  document.documentElement.classList.add("paper");
+  forgetColours();
 };
 const fromPaper = () => {
   document.querySelectorAll("details[data-printed]").forEach((opened) => {
     opened.open = false;
     delete opened.dataset.printed;
   });
+  document.documentElement.classList.remove("paper");
+  forgetColours();
 };
 addEventListener("beforeprint", toPaper);
 addEventListener("afterprint", fromPaper);

@@ -66,9 +66,9 @@ function drawRegion(state, host) {
   const { unit } = course.compared[state.compared];
   const [here, all] = [region.holds, () => true].map((holds) => squares(state, model, holds));
   const rms = ({ sum, count }) => quantity(Math.sqrt(sum / count), unit);
-  const before = model > 0 ? `, before ${rms(squares(state, 0, region.holds))}` : "";
+  const first = model > 0 ? ` (${course.models[0].name} ${rms(squares(state, 0, region.holds))})` : "";
   const told = here.count
-    ? ` ${percent(here.count / all.count)} of the samples, ${percent(here.sum / all.sum)} of the squared residual; ${rms(here)} rms here${before}, ${rms(all)} over all`
+    ? ` ${percent(here.count / all.count)} of the samples, ${percent(here.sum / all.sum)} of the squared residual; ${rms(here)} rms here${first}, ${rms(all)} over all`
     : " is not compared: see the reason under the cursor";
   const back = element("button", { type: "button", onclick: () => whole(state.left) }, "All of it");
   host.replaceChildren(element("b", {}, region.name), told, " ", back);
@@ -79,7 +79,7 @@ function regimeButtons(state) {
   const { regimes, regime } = state.course;
   const buttons = regimes.map((name, index) => {
     const share = element("small");
-    const button = element("button", { type: "button", "aria-pressed": "false", title: `look at the residual in this regime alone; its share of the squared residual as drawn` }, element("i", { class: REGIME_TINTS[index % 7] }), name, share);
+    const button = element("button", { type: "button", "aria-pressed": "false", title: "look at the residual in this regime alone; the number is its share of the squared residual drawn here" }, element("i", { class: REGIME_TINTS[index % 7] }), name, share);
     button.addEventListener("click", () => {
       const chosen = state.region?.regime === index;
       whole(state.left);
