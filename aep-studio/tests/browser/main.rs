@@ -54,10 +54,11 @@ fn main() {
         trials.push(Trial::test(name, run).with_ignored_flag(skipped));
     }
     let skipped = browser.is_none();
+    let of_script = browser.clone();
     trials.push(
         Trial::test("no_text_of_a_file_becomes_a_script", move || {
             let folder = tempfile::tempdir().unwrap();
-            let mut tab = Tab::new(browser.as_deref().unwrap_or_default(), WIDE);
+            let mut tab = Tab::new(of_script.as_deref().unwrap_or_default(), WIDE);
             tab.open(&page::made(folder.path(), 20_000, page::EVIL));
             reveal(&mut tab);
             assert_eq!(
