@@ -1,14 +1,18 @@
 // A part of the recording looked at alone: a stretch of time, a regime, cells of the map. All pictures of the residual then show
 // that part, at its size, with what share of the residual it is.
 
-// What a model leaves where it is compared, in the part that is looked at; NaN elsewhere.
+const everywhere = () => true;
+
+// What a model leaves of the samples that are compared and hold; NaN elsewhere.
+function residualWhere(state, model, holds) {
+  const { residuals, leftOut } = state.course.compared[state.compared];
+  return residuals[model].map((value, k) => (leftOut[k] < 0 && holds(k) ? value : NaN));
+}
+
+// The same in the part that is looked at.
 function residualOf(state, model) {
   const key = `${state.compared} ${model}`;
-  if (!state.residuals.has(key)) {
-    const compared = state.course.compared[state.compared];
-    const holds = state.region?.holds ?? (() => true);
-    state.residuals.set(key, compared.residuals[model].map((value, k) => (compared.leftOut[k] < 0 && holds(k) ? value : NaN)));
-  }
+  if (!state.residuals.has(key)) state.residuals.set(key, residualWhere(state, model, state.region?.holds ?? everywhere));
   return state.residuals.get(key);
 }
 
@@ -46,14 +50,8 @@ function lookAround(state, instant) {
 
 // Sum of squares and number of what a model leaves over all samples that are compared and hold.
 function squares(state, model, holds) {
-  const { residuals, leftOut } = state.course.compared[state.compared];
-  let [sum, count] = [0, 0];
-  residuals[model].forEach((value, k) => {
-    if (leftOut[k] >= 0 || !isFinite(value) || !holds(k)) return;
-    sum += value ** 2;
-    count++;
-  });
-  return { sum, count };
+  const known = residualWhere(state, model, holds).filter(isFinite);
+  return { sum: known.reduce((sum, value) => sum + value ** 2, 0), count: known.length };
 }
 
 const percent = (share) => (isFinite(share) ? `${number(100 * share, share < 0.0995 ? 2 : 3)} %` : "–");
@@ -64,7 +62,7 @@ function drawRegion(state, host) {
   host.hidden = !region;
   if (!region) return;
   const { unit } = course.compared[state.compared];
-  const [here, all] = [region.holds, () => true].map((holds) => squares(state, model, holds));
+  const [here, all] = [region.holds, everywhere].map((holds) => squares(state, model, holds));
   const rms = ({ sum, count }) => quantity(Math.sqrt(sum / count), unit);
   const first = model > 0 ? ` (${course.models[0].name} ${rms(squares(state, 0, region.holds))})` : "";
   const told = here.count
@@ -88,7 +86,7 @@ function regimeButtons(state) {
     return { button, share, holds: (k) => regime[k] === index, index };
   });
   state.tellRegimes = () => {
-    const all = squares(state, state.model, () => true).sum;
+    const all = squares(state, state.model, everywhere).sum;
     for (const { button, share, holds, index } of buttons) {
       share.textContent = percent(squares(state, state.model, holds).sum / all);
       button.setAttribute("aria-pressed", String(state.region?.regime === index));

@@ -201,10 +201,10 @@ function limits(values, tail = 0.001) {
   return [known[Math.floor(known.length * tail)], known[Math.ceil(known.length * (1 - tail)) - 1]];
 }
 
-// Where a model errs most: stretches of a hundredth of the recording's length with the largest rms.
+// Where a model errs most in all of the recording: stretches of a hundredth of its length with the largest rms.
 function moments(state) {
   const { time, regime, regimes } = state.course;
-  const residual = residualOf(state, state.model);
+  const residual = residualWhere(state, state.model, everywhere);
   const length = (time[time.length - 1] - time[0]) / 100;
   const found = [];
   let [from, sum, count] = [0, 0, 0];
@@ -233,7 +233,7 @@ function moments(state) {
   const button = (moment, k) =>
     element(
       "button",
-      { type: "button", title: "look at this stretch alone", onclick: () => lookAtStretch(state, moment.start, moment.end, moment.regime) },
+      { type: "button", title: "look at this stretch alone", onclick: () => lookAtStretch(state, moment.start, moment.end) },
       element("b", {}, `${k + 1}`),
       ` ${number(moment.at, 4)} s: ${quantity(moment.rms, unit)} rms${moment.regime ? `, ${moment.regime}` : ""}`,
     );
@@ -321,6 +321,8 @@ function zeroLine(made, pen) {
   const y = made.plot.valToPos(0, "y", true);
   pen.save();
   pen.strokeStyle = colour("soft");
+  pen.lineWidth = devicePixelRatio || 1;
+  pen.setLineDash([]);
   pen.beginPath();
   pen.moveTo(left, y);
   pen.lineTo(left + width, y);
