@@ -18,7 +18,7 @@ fn optimizers_are_compared_with_curves_trials_and_a_plot() {
     let page = desk.read("page.html");
     assert!(page.contains("<td class=num>8/8</td>") && page.contains("log10 of cost"));
     // Both curves with their quartiles.
-    assert_eq!((page.matches("<polyline").count(), page.matches("<polygon").count()), (2, 2));
+    assert_eq!((page.matches("<polyline class").count(), page.matches("<polygon class").count()), (2, 2));
 }
 
 #[test]
@@ -67,10 +67,10 @@ fn figures_made_before_are_kept_and_others_made_again() {
     assert!(table.starts_with("| figure | about |") && table.contains("| fig4 | AEP |"));
     assert!(desk.read("paper/table.html").contains("<td>fig4</td>"));
     let page = desk.read("paper/table.html");
-    assert!(page.contains("<section id=\"fig4\">") && page.contains("<polyline"));
+    assert!(page.contains("<section id=\"fig4\">") && page.contains("<polyline class"));
     let again = desk.aep(&format!("{line} 5"));
     assert!(again.done().contains("kept fig4"));
-    let figures = |page: &str| page.matches("<polyline").count();
+    let figures = |page: &str| page.matches("<polyline class").count();
     assert_eq!(figures(&desk.read("paper/table.html")), figures(&page));
     assert_eq!(desk.read("paper/table.md"), table);
     // Other conditions, a missing file, a record that is none: made again.

@@ -232,6 +232,7 @@ fn simulated(chromium: &str) {
     assert_ne!(picture(&mut tab), before);
     press(&mut tab, "control", "Simulate");
     tab.until("document.querySelector('[data-part=control]').innerText.includes('less RMS error')");
+    tab.until("Boolean(document.querySelector('[data-part=control] figure'))");
     tab.eval("document.querySelector('[data-part=control] figure').scrollIntoView()");
     tab.until("Boolean(document.querySelector('[data-part=control] .canvas canvas'))");
     // A value that is not there fixes nothing at 0.

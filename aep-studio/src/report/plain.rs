@@ -127,7 +127,7 @@ mod tests {
         };
         let page = page(evil, evil, &[part], evil);
         assert!(!page.contains("<img") && page.contains("&lt;img"));
-        assert!(page.contains("<td class=num>3</td>") && page.contains("<polyline"));
+        assert!(page.contains("<td class=num>3</td>") && page.contains("<polyline class"));
         assert!(page.contains("data-plot="), "it can be zoomed");
     }
 }
