@@ -1,5 +1,7 @@
-//! Curves as an SVG file.
+//! Curves as an SVG file, and as a figure of a page.
 
+use aep_studio::report::plain::{Band, Figure};
+use missing_physics::report::{self, Plot};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
@@ -56,6 +58,35 @@ pub fn svg_against(axes: Axes<'_>, curves: &[Curve], dashed: &[Curve]) -> Result
         area.present().map_err(|error| failed(&error))?;
     }
     Ok(text)
+}
+
+/// The same for a page: its axes are even, so a logarithmic one has the logarithms.
+pub fn figure(axes: Axes<'_>, curves: &[Curve]) -> Figure {
+    let with_unit = |label: &str| label.replacen(", ", " / ", 1);
+    let curves: Vec<Curve> = curves.iter().map(|curve| scaled(curve, axes.logarithmic)).collect();
+    let drawn = curves.iter().map(|curve| {
+        let (x, y) = curve.points.iter().copied().unzip();
+        report::Curve { label: curve.label.clone(), x, y }
+    });
+    let bands = curves.iter().filter(|curve| !curve.band.is_empty()).map(|curve| Band {
+        label: curve.label.clone(),
+        x: curve.band.iter().map(|(x, ..)| *x).collect(),
+        low: curve.band.iter().map(|(_, low, _)| *low).collect(),
+        high: curve.band.iter().map(|(.., high)| *high).collect(),
+    });
+    Figure {
+        plot: Plot {
+            title: axes.title.to_owned(),
+            x_label: with_unit(axes.x),
+            y_label: if axes.logarithmic {
+                format!("log10 of {}", axes.y)
+            } else {
+                with_unit(axes.y)
+            },
+            curves: drawn.collect(),
+        },
+        bands: bands.collect(),
+    }
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;

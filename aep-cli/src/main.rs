@@ -3,6 +3,7 @@
 mod app;
 mod args;
 mod commands;
+mod compensation;
 mod curve_plot;
 mod example;
 mod experiment;

@@ -12,6 +12,7 @@
 //! | `guard` | which requests are heard |
 //! | `routes` | requests and their answers |
 //! | `data`, `law`, `riddle`, `export` | a file and its mapping; a law while it is typed; challenges; files to take away |
+//! | `pictures` | models on the recording, as they are drawn |
 //! | `view` | what the page is told |
 
 mod data;
@@ -19,6 +20,7 @@ mod export;
 mod guard;
 mod jobs;
 mod law;
+mod pictures;
 mod project;
 mod riddle;
 mod routes;

@@ -21,7 +21,7 @@ pub(crate) const STYLE: &str =
 /// A library of plots, as it was published.
 pub(crate) const LIBRARY: &str = include_str!("front/uplot/uPlot.iife.min.js");
 /// Plots, in the order in which they need each other.
-pub(crate) const PLOTS: [&str; 9] = [
+pub(crate) const PLOTS: [&str; 11] = [
     include_str!("front/data.js"),
     include_str!("front/units.js"),
     include_str!("front/colours.js"),
@@ -30,7 +30,9 @@ pub(crate) const PLOTS: [&str; 9] = [
     include_str!("front/chart.js"),
     include_str!("front/heatmap.js"),
     include_str!("front/figures.js"),
+    include_str!("front/region.js"),
     include_str!("front/screen.js"),
+    include_str!("front/print.js"),
 ];
 const START: &str = include_str!("front/start.js");
 

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use missing_physics::report::{Curve, Plot};
+use serde::{Deserialize, Serialize};
 
 use crate::front::{self, Named};
 use crate::html::{concat, escape};
@@ -19,10 +20,11 @@ const RIGHT: f64 = 14.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
 /// Colours of the style sheet for curves with names of their own.
-const OTHERS: [&str; 3] = ["c3", "c4", "c0"];
+const OTHERS: [&str; 6] = ["c3", "c4", "c6", "c7", "c0", "c5"];
 
-/// What is known of the curve of the same place: an area between two lines.
-pub(crate) struct Band {
+/// What is known of the curve of the same label: an area between two lines.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Band {
     /// Label of the curve that it belongs to.
     pub label: String,
     /// Abscissa.

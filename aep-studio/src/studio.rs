@@ -2,16 +2,17 @@
 //! network.
 
 use missing_physics::measurement::check::DataCheck;
-use missing_physics::report::{Rung, Samples};
+use missing_physics::report::{Rung, Samples, Whiteness};
 use serde_json::Value;
 
 use crate::front::{self, samples};
 use crate::html::escape;
-use crate::report::{self, Source};
+use crate::report::{self, Source, residual};
+use crate::words;
 
 const PAGE: &str = include_str!("front/studio/page.html");
 /// In the order in which they need each other.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("front/studio/server.js"),
     include_str!("front/studio/parts.js"),
     include_str!("front/studio/load.js"),
@@ -19,6 +20,7 @@ const SCRIPTS: [&str; 9] = [
     include_str!("front/studio/models.js"),
     include_str!("front/studio/candidates.js"),
     include_str!("front/studio/law.js"),
+    include_str!("front/studio/control.js"),
     include_str!("front/studio/more.js"),
     include_str!("front/studio/studio.js"),
 ];
@@ -52,6 +54,14 @@ pub fn said(rung: &Rung) -> String {
 /// What was seen in the data, as HTML: nothing of a file is markup in it.
 pub fn data(check: &DataCheck, source: &Source) -> String {
     report::data::section(check, source)
+}
+
+/// Whether what a model leaves resembles itself some time later, as HTML: a sentence, and the autocorrelation with its band
+/// beside that of the base model. `name` is what is compared.
+pub fn whiteness(name: &str, base: Option<&Whiteness>, last: &Whiteness) -> String {
+    let figure = residual::autocorrelation(base, last).unwrap_or_default();
+    let said = format!("Of the {name} along the measured motion: {}", words::whiteness(last));
+    format!("{figure}<p class=lead>{}</p>", escape(&said))
 }
 
 #[cfg(test)]

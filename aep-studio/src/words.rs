@@ -317,7 +317,8 @@ pub fn residual_tests(diagnosis: &Diagnosis) -> Vec<String> {
     diagnosis.whiteness.iter().map(whiteness).chain(independence(diagnosis)).collect()
 }
 
-fn whiteness(test: &Whiteness) -> String {
+/// Whether a residual resembles itself.
+pub(crate) fn whiteness(test: &Whiteness) -> String {
     if test.p_value > CHANCE {
         return format!("The residual is white (p = {}).", p_value(test.p_value));
     }

@@ -60,6 +60,23 @@ pub struct LoopArgs {
     no_presliding: bool,
 }
 
+impl Default for LoopArgs {
+    /// As without flags.
+    fn default() -> Self {
+        Self {
+            sample_time: friction_ident::paper::SAMPLE_TIME,
+            kp: None,
+            kd: None,
+            feedforward: false,
+            encoder: None,
+            force_resolution: 0.0,
+            force_limit: None,
+            critical_velocity: None,
+            no_presliding: false,
+        }
+    }
+}
+
 impl LoopArgs {
     /// Servo and settings for `model`; gains that are not given are those of `default`, or suit the
     /// model's mass.
@@ -90,6 +107,29 @@ impl LoopArgs {
 
 /// Longest run, in samples: a slip of a unit should not fill the memory.
 const MOST: f64 = 5e6;
+/// The same where nobody can end it.
+const MOST_SHAPED: f64 = 2e5;
+/// Speed of the paper's ramp, m/s.
+const SLOW: f64 = 1e-3;
+
+fn sampled(
+    course: Course,
+    duration: f64,
+    sample_time: f64,
+    most: f64,
+) -> Result<Reference, Failure> {
+    if (duration / sample_time).is_nan() || duration / sample_time >= most {
+        return Err(Failure::bad_input(format!(
+            "{duration:.3e} s at {sample_time} s a sample are too many samples"
+        ))
+        .with_hint("give a shorter --duration, or check the units of --reference"));
+    }
+    let reference = course.sampled(sample_time, duration);
+    if reference.position.len() < LEAST {
+        return Err(too_short(reference.position.len()));
+    }
+    Ok(reference)
+}
 
 impl ReferenceArgs {
     /// The reference, sampled.
@@ -101,17 +141,18 @@ impl ReferenceArgs {
         }
         let course = course(&self.reference, axis)?;
         let duration = self.duration.unwrap_or_else(|| course.usual_duration());
-        if (duration / sample_time).is_nan() || duration / sample_time >= MOST {
-            return Err(Failure::bad_input(format!(
-                "{duration:.3e} s at {sample_time} s a sample are too many samples"
-            ))
-            .with_hint("give a shorter --duration, or check the units of --reference"));
-        }
-        let reference = course.sampled(sample_time, duration);
-        if reference.position.len() < LEAST {
-            return Err(too_short(reference.position.len()));
-        }
-        Ok(reference)
+        sampled(course, duration, sample_time, MOST)
+    }
+
+    /// One that is no file, `ramp:0.1cm/s`, over its usual duration; the slow ramp of the paper where none is given.
+    pub fn of_shape(
+        text: Option<&str>,
+        axis: Axis,
+        sample_time: f64,
+    ) -> Result<Reference, Failure> {
+        let slow = Course::Ramp { speed: SLOW * axis.typical(Quantity::Velocity) };
+        let course = text.map_or(Ok(slow), |text| course(text, axis))?;
+        sampled(course, course.usual_duration(), sample_time, MOST_SHAPED)
     }
 
     /// A file's positions, linear between its samples.

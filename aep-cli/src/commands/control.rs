@@ -1,21 +1,21 @@
 //! `aep control`: PD with and without friction compensation.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use friction_ident::control::{
-    self, Compensator, ControlError, Deviation, Measures, Servo, Settings, Trial, paper, robustness,
-};
-use friction_ident::{Axis, Model, Quantity, Reference};
-use missing_physics::measurement::quantity::{percent, quantity};
+use aep_studio::report::plain::{self, Part};
+use friction_ident::control::{Deviation, Trial, paper, robustness};
+use friction_ident::{Axis, Quantity};
+use missing_physics::measurement::quantity::quantity;
 use serde_json::json;
 
-use crate::steps;
 use crate::app::Global;
 use crate::args::{LoopArgs, ReferenceArgs};
+use crate::compensation::{self, Case};
 use crate::curve_plot::{self, Axes, Curve};
 use crate::failure::Failure;
-use crate::output::{self, Align, Table, heading, written};
+use crate::output::{self, Table, heading, written};
+use crate::report::command;
 
 /// Simulate PD control with and without friction compensation
 ///
@@ -48,6 +48,9 @@ pub struct Args {
     /// Write the measures as JSON; `-` for the terminal
     #[arg(long, value_name = "FILE", help_heading = "Results")]
     json: Option<PathBuf>,
+    /// Write measures and plots as one HTML file that loads nothing from elsewhere; `-` for the terminal
+    #[arg(long, value_name = "FILE", help_heading = "Results")]
+    html: Option<PathBuf>,
 }
 
 const EXAMPLES: &str = "\
@@ -61,36 +64,11 @@ Examples:
 References: ramp:SPEED  sine:AMPLITUDE,FREQUENCY  trapezoid:DISTANCE,SPEED,ACCELERATION
             reversal:SPEED,INTERVAL  FILE.csv; numbers without unit are SI.";
 
-impl From<ControlError> for Failure {
-    fn from(error: ControlError) -> Self {
-        match error {
-            ControlError::Compensator(error) => Self::from_lines(&error.to_string()),
-            other => {
-                let text = other.to_string();
-                let first = text.lines().next().unwrap_or_default();
-                Self::failed(format!("the loop cannot be simulated: {first}"))
-                    .with_hint("lower --kp and --kd, or sample faster with --sample-time")
-            }
-        }
-    }
-}
-
-/// Everything that is decided before a run.
-struct Case {
-    model: Model,
-    plant: Model,
-    servo: Servo,
-    settings: Settings,
-    reference: Reference,
-}
-
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let case = case(args)?;
-    let compensator =
-        Compensator::new(&case.model, case.settings).map_err(ControlError::Compensator)?;
-    let pd = control::run(&case.plant, &case.reference, &case.servo, None)?;
-    let with = control::run(&case.plant, &case.reference, &case.servo, Some(&compensator))?;
+    let both = case.run()?;
+    let (pd, with) = (&both.pd, &both.with);
     let deviations = match args.robustness {
         None => Vec::new(),
         Some(percent) => {
@@ -112,36 +90,39 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     };
     let mut files = String::new();
     if let Some(path) = &args.output {
-        output::save(path, &csv(&case, &pd, &with))?;
+        output::save(path, &csv(&case, pd, with))?;
         files += &written("signals", path);
     }
     if let Some(path) = &args.plot {
-        output::save(path, &plot(&case, &pd, &with)?)?;
+        output::save(path, &plot(&case, pd, with)?)?;
         files += &written("plot", path);
     }
     if let Some(path) = &args.json {
-        output::save_json(path, &in_json(&case, &pd, &with, &deviations))?;
+        output::save_json(path, &in_json(&case, pd, with, &deviations))?;
         if path.as_os_str() != "-" {
             files += &written("measures", path);
         }
     }
-    let own_stdout = [&args.output, &args.plot, &args.json]
+    let said = both.said();
+    let parts: Vec<Part> =
+        std::iter::once(case.part(&both)).chain(deviations_part(&case, &deviations)).collect();
+    if let Some(path) = &args.html {
+        let summary = said.as_deref().unwrap_or_default();
+        output::save(path, &plain::page("Friction compensation, simulated", summary, &parts, &command()))?;
+        files += &written("report", path);
+    }
+    let own_stdout = [&args.output, &args.plot, &args.json, &args.html]
         .into_iter()
         .flatten()
         .any(|path| path.as_os_str() == "-");
     if global.quiet || own_stdout {
         return Ok(());
     }
-    output::print(&(report(&case, &compensator, &pd, &with) + &deviation_table(&case, &deviations) + &files))
+    output::print(&(report(&parts, said.as_deref()) + &files))
 }
 
 fn case(args: &Args) -> Result<Case, Failure> {
-    let plant = |path: &Path| {
-        let model = steps::read_plant(path)?;
-        steps::needs_force(&model, path)?;
-        Ok::<_, Failure>(model)
-    };
-    let read = |path: &Option<PathBuf>| path.as_deref().map(plant).transpose();
+    let read = |path: &Option<PathBuf>| path.as_deref().map(compensation::read).transpose();
     let (model, plant) = (read(&args.model)?, read(&args.plant)?);
     let of_the_paper = model.is_none();
     let model = match model {
@@ -161,101 +142,43 @@ fn case(args: &Args) -> Result<Case, Failure> {
     Ok(Case { model, plant, servo, settings, reference })
 }
 
-fn report(case: &Case, compensator: &Compensator, pd: &Trial, with: &Trial) -> String {
-    let axis = case.model.axis();
-    let unit = |quantity| axis.unit(quantity);
-    let (servo, step) = (&case.servo, case.settings.sample_time);
-    let radius = servo.linear(&case.plant, step).spectral_radius();
-    let mut text = heading("The loop");
-    let _ = writeln!(
-        text,
-        " K_P {:.4e} {}, K_D {:.4e} {}, every {}, encoder {}, stick up to {}",
-        servo.proportional,
-        unit(Quantity::Stiffness),
-        servo.derivative,
-        unit(Quantity::Damping),
-        quantity(step, "s"),
-        quantity(servo.setup.encoder_resolution, unit(Quantity::Length)),
-        quantity(case.settings.critical_velocity, unit(Quantity::Velocity)),
-    );
-    if radius >= 1.0 {
-        let _ = writeln!(
-            text,
-            " warning: the loop is unstable even without friction levels (spectral radius {radius:.3})"
-        );
-    }
-    for left in compensator.left_out() {
-        let _ = writeln!(text, " not compensated: {}: {}", left.effect, left.why);
-    }
-    text += &heading("PD with and without compensation");
-    text += &measures_table(axis, &pd.measures, &with.measures);
-    let (before, after) = (pd.measures.rms_error, with.measures.rms_error);
-    if before > 0.0 {
-        let words = if after <= before { "less" } else { "MORE" };
-        let _ = writeln!(
-            text,
-            "\n Compensation: {} {words} RMS error",
-            percent((1.0 - after / before).abs())
-        );
-    }
-    text
-}
-
-fn measures_table(axis: Axis, pd: &Measures, with: &Measures) -> String {
-    let (length, force) = (axis.unit(Quantity::Length), axis.unit(Quantity::Force));
-    let mut table = Table::new(&[
-        ("", Align::Left),
-        ("PD", Align::Right),
-        ("PD + compensation", Align::Right),
-    ]);
-    let mut row = |name: &str, show: &dyn Fn(&Measures) -> String| {
-        table.row([name.to_owned(), show(pd), show(with)]);
-    };
-    row("RMS tracking error", &|m| quantity(m.rms_error, length));
-    row("peak tracking error", &|m| quantity(m.peak_error, length));
-    row("mean lag", &|m| quantity(m.mean_lag, length));
-    row("time to break away", &|m| quantity(m.breakaway_time, "s"));
-    row("stick time", &|m| quantity(m.stick_time, "s"));
-    row("stick episodes", &|m| m.stick_episodes.to_string());
-    row("standstill at a reversal, mean", &|m| {
-        m.mean_standstill().map_or_else(|| "-".into(), |time| quantity(time, "s"))
-    });
-    row("RMS command", &|m| quantity(m.effort_rms, force));
-    row("peak command", &|m| quantity(m.effort_peak, force));
-    row("RMS change of the command", &|m| quantity(m.effort_change, force));
-    row("limit cycle", &|m| match m.limit_cycle {
-        None => "none".into(),
-        Some(cycle) => {
-            format!("{} every {}", quantity(cycle.amplitude, length), quantity(cycle.period, "s"))
-        }
-    });
-    table.text()
-}
-
-fn deviation_table(case: &Case, deviations: &[Deviation]) -> String {
-    let Some(exact) = deviations.first() else { return String::new() };
+fn deviations_part(case: &Case, deviations: &[Deviation]) -> Option<Part> {
+    let exact = deviations.first()?;
     let length = case.model.axis().unit(Quantity::Length);
-    let mut table = Table::new(&[
-        ("parameter", Align::Left),
-        ("off by", Align::Right),
-        ("RMS error", Align::Right),
-        ("factor", Align::Right),
-        ("sticks", Align::Right),
-        ("what happens", Align::Left),
-    ]);
-    for deviation in deviations {
+    let row = |deviation: &Deviation| {
         let rms = deviation.measures.rms_error;
         let words: Vec<&str> = deviation.behaviour.iter().map(|b| b.words()).collect();
-        table.row([
+        vec![
             deviation.parameter.clone(),
             format!("{:+.0} %", 100.0 * (deviation.factor - 1.0)),
             quantity(rms, length),
             format!("x {:.2}", rms / exact.measures.rms_error.max(f64::MIN_POSITIVE)),
             deviation.measures.stick_episodes.to_string(),
             words.join(", "),
-        ]);
+        ]
+    };
+    let headings = ["parameter", "#off by", "#RMS error", "#factor", "#sticks", "what happens"];
+    Some(Part {
+        id: "robustness".to_owned(),
+        title: "Compensation with a wrong model".to_owned(),
+        headings: headings.map(str::to_owned).to_vec(),
+        rows: deviations.iter().map(row).collect(),
+        ..Part::default()
+    })
+}
+
+fn report(parts: &[Part], said: Option<&str>) -> String {
+    let mut text = heading("The loop");
+    for note in parts.iter().flat_map(|part| &part.notes) {
+        let _ = writeln!(text, " {note}");
     }
-    heading("Compensation with a wrong model") + &table.text()
+    for (k, part) in parts.iter().enumerate() {
+        text += &Table::of(part);
+        if let Some(said) = said.filter(|_| k == 0) {
+            let _ = writeln!(text, "\n {said}");
+        }
+    }
+    text
 }
 
 fn csv(case: &Case, pd: &Trial, with: &Trial) -> String {

@@ -8,6 +8,7 @@ use std::time::Duration;
 use aep_core::trials::{Plan, RankTest, Summary, Trials, rank_test};
 use aep_core::{Budget, Method, methods};
 use aep_problems::TestProblem;
+use aep_studio::report::plain::{self, Part};
 use serde::Serialize;
 
 use super::optimize_run::{self, RunArgs};
@@ -16,8 +17,9 @@ use super::reproduce::keep;
 use crate::app::Global;
 use crate::curve_plot::{self, Axes, Curve};
 use crate::failure::Failure;
-use crate::output::{self, Align, Table, dim, heading};
+use crate::output::{self, Table, dim};
 use crate::progress::Progress;
+use crate::report::command;
 use crate::stop;
 
 /// Compare optimizers on a test function: same initial populations, statistics over trials
@@ -76,6 +78,9 @@ pub struct Args {
     /// Write the summary as JSON; `-` for the terminal
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Write table and curves as one HTML file that loads nothing from elsewhere; `-` for the terminal
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     #[command(flatten)]
     single: RunArgs,
 }
@@ -104,6 +109,10 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             let what = "--trace, --checkpoint and --resume follow a single run";
             return Err(Failure::bad_input(what).with_hint("name one optimizer by --algorithm"));
         };
+        if args.html.is_some() {
+            return Err(Failure::bad_input("a single run has no page")
+                .with_hint("leave --html out: --trace run.csv has every generation"));
+        }
         let run = (budget(args, target), args.seed);
         let problem = if args.shift { problem.with_random_shift(args.seed) } else { problem };
         return optimize_run::run(&args.single, &**method, &problem, run, global);
@@ -129,11 +138,18 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if let Some(path) = &args.json {
         output::save_json(path, &comparison)?;
     }
+    let mut part = table(&comparison);
+    if let Some(path) = &args.html {
+        part.figures.push(curves(&problem, &results, curve_plot::figure));
+        let summary = format!("{} trials of each, the same first populations.", args.trials);
+        output::save(path, &plain::page("Optimizers compared", &summary, std::slice::from_ref(&part), &command()))?;
+    }
     let files = args.output.as_deref().map_or(Ok(Vec::new()), |directory| {
         write(directory, &problem, &comparison, &results)
     })?;
-    if !global.quiet {
-        output::print(&report(&comparison, &files))?;
+    let own_stdout = args.html.as_deref().is_some_and(|path| path.as_os_str() == "-");
+    if !global.quiet && !own_stdout {
+        output::print(&report(&part, &files))?;
     }
     if interrupted {
         return Err(Failure::interrupted("the trials that had ended are what is reported"));
@@ -203,24 +219,12 @@ fn compare(problem: &TestProblem, target: f64, plan: Plan, results: &[Trials]) -
     }
 }
 
-fn report(comparison: &Comparison, files: &[PathBuf]) -> String {
+fn table(comparison: &Comparison) -> Part {
     let (name, target) = (comparison.problem, comparison.target);
-    let title = format!("{name} in {} components, solved at {target:.3e}", comparison.dimension);
-    let mut table = Table::new(&[
-        ("optimizer", Align::Left),
-        ("solved", Align::Right),
-        ("evaluations", Align::Right),
-        ("expected with restarts", Align::Right),
-        ("median cost", Align::Right),
-        ("quartiles", Align::Right),
-        ("mean cost", Align::Right),
-        ("first is better", Align::Right),
-        ("p", Align::Right),
-    ]);
     let count = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.0}"));
-    for (summary, test) in comparison.summaries.iter().zip(&comparison.first_against) {
+    let row = |(summary, test): (&Summary, &Option<RankTest>)| {
         let (low, high) = summary.quartiles;
-        table.row([
+        vec![
             summary.method.clone(),
             format!("{}/{}", summary.successes, summary.trials),
             count(summary.evaluations_to_target),
@@ -230,13 +234,35 @@ fn report(comparison: &Comparison, files: &[PathBuf]) -> String {
             format!("{:.2e}", summary.mean),
             test.map_or(String::new(), |test| format!("{:.2}", test.effect)),
             test.map_or(String::new(), |test| format!("{:.0e}", test.p_value)),
-        ]);
+        ]
+    };
+    let headings = [
+        "optimizer",
+        "#solved",
+        "#evaluations",
+        "#expected with restarts",
+        "#median cost",
+        "#quartiles",
+        "#mean cost",
+        "#first is better",
+        "#p",
+    ];
+    Part {
+        id: "optimizers".to_owned(),
+        title: format!("{name} in {} components, solved at {target:.3e}", comparison.dimension),
+        notes: vec![
+            "'first is better': probability that a trial of the first optimizer beats one of this row; \
+             p: rank test of no difference"
+                .to_owned(),
+        ],
+        headings: headings.map(str::to_owned).to_vec(),
+        rows: comparison.summaries.iter().zip(&comparison.first_against).map(row).collect(),
+        figures: Vec::new(),
     }
-    let note = dim(
-        "'first is better': probability that a trial of the first optimizer beats one of this row; \
-         p: rank test of no difference",
-    );
-    let mut text = format!("{}{}\n {note}\n", heading(&title), table.text());
+}
+
+fn report(part: &Part, files: &[PathBuf]) -> String {
+    let mut text = format!("{}\n {}\n", Table::of(part), dim(&part.notes.concat()));
     for file in files {
         let _ = writeln!(text, " {} {}", dim("written"), file.display());
     }
@@ -252,7 +278,7 @@ fn write(
     output::make_folder(directory)?;
     let mut files = Vec::new();
     keep(&mut files, &directory.join("curves.csv"), &curves_csv(results))?;
-    keep(&mut files, &directory.join("curves.svg"), &svg(problem, results)?)?;
+    keep(&mut files, &directory.join("curves.svg"), &curves(problem, results, curve_plot::svg)?)?;
     keep(&mut files, &directory.join("trials.csv"), &trials_csv(comparison.target, results))?;
     let summary = directory.join("summary.json");
     output::save_json(&summary, comparison)?;
@@ -296,7 +322,12 @@ fn trials_csv(target: f64, results: &[Trials]) -> String {
     text
 }
 
-fn svg(problem: &TestProblem, results: &[Trials]) -> Result<String, Failure> {
+/// The curves, drawn by `draw`.
+fn curves<T>(
+    problem: &TestProblem,
+    results: &[Trials],
+    draw: impl Fn(Axes<'_>, &[Curve]) -> T,
+) -> T {
     let above = |cost: f64| cost - problem.optimal_cost();
     let grid = grid(results);
     let curve = |trials: &Trials| {
@@ -311,5 +342,5 @@ fn svg(problem: &TestProblem, results: &[Trials]) -> Result<String, Failure> {
     let title = format!("{}, median and quartiles", problem.definition().name);
     let (x, y) = ("evaluations", "cost above the smallest");
     let axes = Axes { title: &title, x, y, logarithmic: true };
-    curve_plot::svg(axes, &results.iter().map(curve).collect::<Vec<Curve>>())
+    draw(axes, &results.iter().map(curve).collect::<Vec<Curve>>())
 }

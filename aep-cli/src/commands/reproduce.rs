@@ -9,12 +9,14 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use aep_problems::paper::Claim;
+use aep_studio::report::plain;
 
 use super::{
     reproduce_control, reproduce_optimizers, reproduce_plant, reproduce_record, reproduce_table,
 };
 use crate::app::Global;
 use crate::failure::Failure;
+use crate::curve_plot::{self, Axes, Curve};
 use crate::output::{self, Align, Table, dim, heading};
 use crate::progress::Progress;
 use crate::stop;
@@ -68,11 +70,32 @@ pub struct Conditions {
 }
 
 /// A figure that has been made.
+#[derive(Default)]
 pub struct Made {
     /// The paper's statements beside ours.
     pub claims: Vec<Claim>,
     /// The files written.
     pub files: Vec<PathBuf>,
+    /// Its plots, for the page.
+    pub figures: Vec<plain::Figure>,
+}
+
+impl Made {
+    /// Writes a file.
+    pub fn keep(&mut self, path: &Path, text: &str) -> Result<(), Failure> {
+        keep(&mut self.files, path, text)
+    }
+
+    /// Draws curves, and some to be compared with, as an SVG file and for the page.
+    pub fn draw(
+        &mut self,
+        path: &Path,
+        axes: Axes<'_>,
+        (curves, dashed): (&[Curve], &[Curve]),
+    ) -> Result<(), Failure> {
+        self.figures.push(curve_plot::figure(axes, &[curves, dashed].concat()));
+        self.keep(path, &curve_plot::svg_against(axes, curves, dashed)?)
+    }
 }
 
 /// All figures; a new one is one entry in one of these lists.
@@ -93,6 +116,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let mut rows = Vec::new();
     let mut files = Vec::new();
     let mut kept = Vec::new();
+    let mut drawn = Vec::new();
     let count = chosen.len();
     let mut done = 0;
     for figure in chosen {
@@ -109,8 +133,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             }
         };
         done += 1;
+        let title = format!("{}: {}", figure.name, figure.title);
         rows.extend(made.claims.into_iter().map(|claim| (figure.name, claim)));
         files.extend(made.files);
+        let id = figure.name.to_owned();
+        drawn.push(plain::Part { id, title, figures: made.figures, ..plain::Part::default() });
     }
     drop(progress);
     if done == 0 {
@@ -119,7 +146,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let tables = [
         ("claims.csv", reproduce_table::csv(&rows)),
         ("table.md", reproduce_table::markdown(&rows)),
-        ("table.html", reproduce_table::html(&rows)),
+        ("table.html", reproduce_table::html(&rows, drawn)),
     ];
     for (name, text) in tables {
         keep(&mut files, &args.output.join(name), &text)?;

@@ -1,14 +1,15 @@
 //! Figures 13 to 17: the X-Y table under PD with and without friction compensation.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use aep_problems::paper::{Claim, Verdict};
 use friction_ident::control::paper::{self, GAIN, Shown};
 use friction_ident::control::{Measures, Trial};
 use missing_physics::measurement::quantity::{percent, quantity};
 
-use super::reproduce::{Conditions, Figure, Made, keep};
-use crate::curve_plot::{self, Axes, Curve};
+use super::reproduce::{Conditions, Figure, Made};
+use crate::curve_plot::{Axes, Curve};
 use crate::failure::Failure;
 
 /// The figures on control, one entry each.
@@ -29,17 +30,17 @@ fn make(name: &'static str, conditions: &Conditions) -> Result<Made, Failure> {
     let figure = paper::FIGURES.iter().find(|figure| figure.name == name);
     let figure = figure.ok_or_else(|| Failure::failed(format!("no figure {name}")))?;
     let shown = figure.show().map_err(|error| Failure::failed(error.to_string()))?;
-    let mut files = Vec::new();
+    let mut made = Made::default();
     let path = |suffix: &str| conditions.directory.join(format!("{name}{suffix}"));
-    keep(&mut files, &path(".csv"), &csv(&shown))?;
-    keep(&mut files, &path(".svg"), &svg(figure, &shown)?)?;
-    keep(&mut files, &path("-error.svg"), &errors(figure, &shown)?)?;
-    let claims = match name {
+    made.keep(&path(".csv"), &csv(&shown))?;
+    positions(&mut made, &path(".svg"), figure, &shown)?;
+    errors(&mut made, &path("-error.svg"), figure, &shown)?;
+    made.claims = match name {
         "fig16" | "fig17" => reversal(figure, &shown),
         "fig13" => [ramp(&shown), gains()?].concat(),
         _ => ramp(&shown),
     };
-    Ok(Made { claims, files })
+    Ok(made)
 }
 
 fn csv(shown: &Shown) -> String {
@@ -64,7 +65,12 @@ fn csv(shown: &Shown) -> String {
     text
 }
 
-fn svg(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
+fn positions(
+    made: &mut Made,
+    path: &Path,
+    figure: &paper::Figure,
+    shown: &Shown,
+) -> Result<(), Failure> {
     let samples = (figure.drawn / shown.reference.sample_time) as usize;
     let points = |position: &[f64]| -> Vec<(f64, f64)> {
         let time = |k| k as f64 * shown.reference.sample_time;
@@ -84,11 +90,16 @@ fn svg(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
     }
     let axes = Axes { title: figure.title, x: "time, s", y: "position, cm", logarithmic: false };
     let desired = curve("desired", &shown.reference.position);
-    curve_plot::svg_against(axes, &curves, &[desired])
+    made.draw(path, axes, (&curves, &[desired]))
 }
 
 /// Tracking errors: what the width of the lines hides in the plot of positions.
-fn errors(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
+fn errors(
+    made: &mut Made,
+    path: &Path,
+    figure: &paper::Figure,
+    shown: &Shown,
+) -> Result<(), Failure> {
     let step = shown.reference.sample_time;
     let curve = |label: &str, trial: &Trial| Curve {
         label: label.to_owned(),
@@ -100,7 +111,7 @@ fn errors(figure: &paper::Figure, shown: &Shown) -> Result<String, Failure> {
     let curves = [curve("PD", &shown.pd), curve("PD + compensation", &shown.compensated)];
     let axes =
         Axes { title: figure.title, x: "time, s", y: "tracking error, µm", logarithmic: false };
-    curve_plot::svg(axes, &curves)
+    made.draw(path, axes, (&curves, &[]))
 }
 
 fn stick(measures: &Measures) -> String {

@@ -1,12 +1,13 @@
 //! Figures 2 to 6: AEP against meta-EP on test functions.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use aep_core::trials::Trials;
 use aep_problems::paper::{self, POPULATION, Reading};
 
-use super::reproduce::{Conditions, Figure, Made, keep, quote};
-use crate::curve_plot::{self, Axes, Curve};
+use super::reproduce::{Conditions, Figure, Made, quote};
+use crate::curve_plot::{Axes, Curve};
 use crate::failure::Failure;
 
 /// The figures on test functions, one entry each.
@@ -25,15 +26,15 @@ fn make(name: &'static str, conditions: &Conditions) -> Result<Made, Failure> {
     let figure = paper::find(name).ok_or_else(|| Failure::failed(format!("no figure {name}")))?;
     let failed = |error: aep_core::RunError| Failure::failed(error.to_string());
     let measured = figure.measure(conditions.trials, conditions.seed).map_err(failed)?;
-    let mut files = Vec::new();
+    let mut made = Made { claims: measured.claims, ..Made::default() };
     let path = |suffix: &str| conditions.directory.join(format!("{name}{suffix}"));
-    keep(&mut files, &path(".csv"), &csv(figure, &measured.lines))?;
-    keep(&mut files, &path(".svg"), &svg(figure, &measured.lines)?)?;
+    made.keep(&path(".csv"), &csv(figure, &measured.lines))?;
+    draw(&mut made, &path(".svg"), figure, &measured.lines)?;
     if conditions.readings {
         let readings = figure.readings(conditions.trials, conditions.seed).map_err(failed)?;
-        keep(&mut files, &path("-readings.csv"), &readings_csv(&readings))?;
+        made.keep(&path("-readings.csv"), &readings_csv(&readings))?;
     }
-    Ok(Made { claims: measured.claims, files })
+    Ok(made)
 }
 
 /// Generation `g` has used as many evaluations as this.
@@ -54,7 +55,12 @@ fn csv(figure: &paper::Figure, lines: &[Trials]) -> String {
     text
 }
 
-fn svg(figure: &paper::Figure, lines: &[Trials]) -> Result<String, Failure> {
+fn draw(
+    made: &mut Made,
+    path: &Path,
+    figure: &paper::Figure,
+    lines: &[Trials],
+) -> Result<(), Failure> {
     let step = (figure.generations / POINTS).max(1);
     let curve = |(line, trials): (&paper::Line, &Trials)| Curve {
         label: line.label.to_owned(),
@@ -67,7 +73,7 @@ fn svg(figure: &paper::Figure, lines: &[Trials]) -> Result<String, Failure> {
     let curves: Vec<Curve> = figure.lines.iter().zip(lines).map(curve).collect();
     let logarithmic = !matches!(figure.name, "fig4" | "fig6");
     let axes = Axes { title: figure.title, x: "generation", y: "mean best cost", logarithmic };
-    curve_plot::svg(axes, &curves)
+    made.draw(path, axes, (&curves, &[]))
 }
 
 fn readings_csv(readings: &[Reading]) -> String {

@@ -12,8 +12,8 @@ use friction_ident::{Identification, Model, intervals, intervals_over};
 use missing_physics::Recording;
 use missing_physics::measurement::quantity::number;
 
-use super::reproduce::{Conditions, Figure, Made, keep};
-use crate::curve_plot::{self, Axes, Curve};
+use super::reproduce::{Conditions, Figure, Made};
+use crate::curve_plot::{Axes, Curve};
 use crate::failure::Failure;
 
 /// The figures of the plant, one entry each.
@@ -59,8 +59,8 @@ fn friction(name: &'static str, conditions: &Conditions) -> Result<Made, Failure
     for (v, f) in &points {
         let _ = writeln!(csv, "{v:e},{f}");
     }
-    let mut files = Vec::new();
-    keep(&mut files, &conditions.directory.join(format!("{name}.csv")), &csv)?;
+    let mut made = Made::default();
+    made.keep(&conditions.directory.join(format!("{name}.csv")), &csv)?;
     // Only the low speeds show the effect; axes in units of the plot's labels.
     let near = points.iter().filter(|(v, _)| v.abs() <= 2e-3).map(|(v, f)| (v * 1e4, *f));
     let curve = Curve { label: "identified friction".into(), points: near.collect(), band: vec![] };
@@ -70,8 +70,7 @@ fn friction(name: &'static str, conditions: &Conditions) -> Result<Made, Failure
         y: "friction in kgf",
         logarithmic: false,
     };
-    let svg = curve_plot::svg(axes, &[curve])?;
-    keep(&mut files, &conditions.directory.join(format!("{name}.svg")), &svg)?;
+    made.draw(&conditions.directory.join(format!("{name}.svg")), axes, (&[curve], &[]))?;
     let (first, least, least_at) = fall(&points);
     let claim = Claim::new(
         "friction at low velocity",
@@ -79,7 +78,8 @@ fn friction(name: &'static str, conditions: &Conditions) -> Result<Made, Failure
         format!("from {first:.3} kgf near rest to {least:.3} kgf at {} cm/s", number(least_at)),
         least < first,
     );
-    Ok(Made { claims: vec![claim], files })
+    made.claims.push(claim);
+    Ok(made)
 }
 
 /// Friction at the lowest positive velocity, the least one, and where that is.
@@ -96,9 +96,9 @@ fn channel<'a>(data: &'a Recording, name: &str) -> Result<&'a [f64], Failure> {
 
 fn training(name: &'static str, conditions: &Conditions) -> Result<Made, Failure> {
     let data = paper::training_data(&table()?, SAMPLE_TIME).map_err(failed)?;
-    let mut files = Vec::new();
+    let mut made = Made::default();
     let path = |suffix: &str| conditions.directory.join(format!("{name}{suffix}"));
-    keep(&mut files, &path(".csv"), &aep_data::to_csv(&data))?;
+    made.keep(&path(".csv"), &aep_data::to_csv(&data))?;
     let curve = |channel: &[f64], unit: f64, label: &str| {
         let points = data.time().iter().zip(channel).map(|(t, x)| (*t, x / unit));
         Curve { label: label.into(), points: points.collect(), band: vec![] }
@@ -106,15 +106,16 @@ fn training(name: &'static str, conditions: &Conditions) -> Result<Made, Failure
     let axes =
         |title, y| Axes { title, x: "time in s (four blocks of 10 s)", y, logarithmic: false };
     let input = [curve(channel(&data, "force")?, KGF, "control input")];
-    let svg = curve_plot::svg(axes("Fig. 11: control input", "force in kgf"), &input)?;
-    keep(&mut files, &path("-input.svg"), &svg)?;
+    let force = axes("Fig. 11: control input", "force in kgf");
+    made.draw(&path("-input.svg"), force, (&input, &[]))?;
     let output = [
         curve(channel(&data, "reference")?, 1e-2, "reference"),
         curve(channel(&data, "position")?, 1e-2, "output"),
     ];
-    let svg = curve_plot::svg(axes("Fig. 11: output", "position in cm"), &output)?;
-    keep(&mut files, &path("-output.svg"), &svg)?;
-    Ok(Made { claims: training_claims(&data)?, files })
+    let position = axes("Fig. 11: output", "position in cm");
+    made.draw(&path("-output.svg"), position, (&output, &[]))?;
+    made.claims = training_claims(&data)?;
+    Ok(made)
 }
 
 fn training_claims(data: &Recording) -> Result<Vec<Claim>, Failure> {
@@ -163,14 +164,14 @@ fn identification(name: &'static str, conditions: &Conditions) -> Result<Made, F
     let found: Vec<(f64, Vec<f64>)> =
         refined.into_iter().map(|refined| (refined.cost, refined.position)).collect();
 
-    let mut files = Vec::new();
+    let mut made = Made::default();
     let path = |suffix: &str| conditions.directory.join(format!("{name}{suffix}"));
-    keep(&mut files, &path("-trials.csv"), &trials_csv(&lines, &found))?;
-    convergence(&lines, &path, &mut files)?;
-    outputs(&task, &data, &lines, &found, &path, &mut files)?;
-    let mut claims = search_claims(&task, &lines, &found);
-    claims.extend(parameter_claims(&task, &found, seed)?);
-    Ok(Made { claims, files })
+    made.keep(&path("-trials.csv"), &trials_csv(&lines, &found))?;
+    convergence(&lines, &path, &mut made)?;
+    outputs(&task, &data, &lines, &found, &path, &mut made)?;
+    made.claims = search_claims(&task, &lines, &found);
+    made.claims.extend(parameter_claims(&task, &found, seed)?);
+    Ok(made)
 }
 
 fn trials_csv(lines: &[(&str, Trials)], found: &[(f64, Vec<f64>)]) -> String {
@@ -190,7 +191,7 @@ fn trials_csv(lines: &[(&str, Trials)], found: &[(f64, Vec<f64>)]) -> String {
 fn convergence(
     lines: &[(&str, Trials)],
     path: &dyn Fn(&str) -> PathBuf,
-    files: &mut Vec<PathBuf>,
+    made: &mut Made,
 ) -> Result<(), Failure> {
     let mut csv = String::from("method,generation,median,first_quartile,third_quartile\n");
     let mut curves = Vec::new();
@@ -217,8 +218,8 @@ fn convergence(
         y: "mean square error over that of the motion",
         logarithmic: true,
     };
-    keep(files, &path("-convergence.csv"), &csv)?;
-    keep(files, &path("-convergence.svg"), &curve_plot::svg(axes, &curves)?)
+    made.keep(&path("-convergence.csv"), &csv)?;
+    made.draw(&path("-convergence.svg"), axes, (&curves, &[]))
 }
 
 /// Outputs of the table and of the models that the median trial of each kind found.
@@ -228,7 +229,7 @@ fn outputs(
     lines: &[(&str, Trials)],
     found: &[(f64, Vec<f64>)],
     path: &dyn Fn(&str) -> PathBuf,
-    files: &mut Vec<PathBuf>,
+    made: &mut Made,
 ) -> Result<(), Failure> {
     let position = channel(data, "position")?;
     let pairs = |trials: &Trials| -> Vec<(f64, Vec<f64>)> {
@@ -254,21 +255,21 @@ fn outputs(
             curves.iter().map(|curve| format!("{:.6}", curve.points[k].1)).collect();
         let _ = writeln!(csv, "{},{}", data.time()[k], values.join(","));
     }
-    keep(files, &path(".csv"), &csv)?;
+    made.keep(&path(".csv"), &csv)?;
     let axes = Axes {
         title: "Fig. 12: outputs of the X-Y table and of identified models",
         x: "time in s (four blocks of 10 s)",
         y: "position in cm",
         logarithmic: false,
     };
-    keep(files, &path(".svg"), &curve_plot::svg(axes, &curves)?)?;
+    made.draw(&path(".svg"), axes, (&curves, &[]))?;
     // Beside the fast block the slow ones cannot be seen.
     let fast = 3.0 * paper::BLOCK as f64 * SAMPLE_TIME;
     for curve in &mut curves {
         curve.points.retain(|(t, _)| *t < fast);
     }
     let axes = Axes { title: "Fig. 12: the three slow blocks", ..axes };
-    keep(files, &path("-slow.svg"), &curve_plot::svg(axes, &curves)?)
+    made.draw(&path("-slow.svg"), axes, (&curves, &[]))
 }
 
 /// The position whose cost is the median one.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use aep_problems::paper::Claim;
+use aep_studio::report::plain::Figure;
 use serde::{Deserialize, Serialize};
 
 use super::reproduce::{Conditions, Made};
@@ -18,6 +19,7 @@ struct Record {
     readings: bool,
     claims: Vec<Claim>,
     files: Vec<PathBuf>,
+    figures: Vec<Figure>,
 }
 
 fn path(name: &str, conditions: &Conditions) -> PathBuf {
@@ -35,7 +37,7 @@ pub fn kept(name: &str, conditions: &Conditions) -> Option<Made> {
     let file = |name: &PathBuf| conditions.directory.join(name);
     let files: Vec<PathBuf> = record.files.iter().map(file).collect();
     let whole = same && files.iter().all(|file| file.exists());
-    whole.then_some(Made { claims: record.claims, files })
+    whole.then_some(Made { claims: record.claims, files, figures: record.figures })
 }
 
 /// Remembers a figure.
@@ -50,6 +52,7 @@ pub fn keep(name: &str, conditions: &Conditions, made: &Made) -> Result<(), Fail
         readings: conditions.readings,
         claims: made.claims.clone(),
         files: made.files.iter().map(inside).collect(),
+        figures: made.figures.clone(),
     };
     output::save_json(&path(name, conditions), &record)
 }

@@ -3,9 +3,10 @@
 use std::fmt::Write;
 
 use aep_problems::paper::Claim;
-use aep_studio::escape;
+use aep_studio::report::plain::{self, Part};
 
 use super::reproduce::quote;
+use crate::report::command;
 
 const HEADINGS: [&str; 6] = ["figure", "about", "the paper prints", "here", "verdict", "why"];
 
@@ -36,21 +37,21 @@ pub fn markdown(rows: &[(&str, Claim)]) -> String {
     text
 }
 
-/// A page of its own.
-pub fn html(rows: &[(&str, Claim)]) -> String {
-    let row_of = |tag: &str, cells: [&str; 6]| {
-        let cells = cells.map(|cell| format!("<{tag}>{}</{tag}>", escape(cell)));
-        format!("<tr>{}</tr>\n", cells.concat())
+/// A page: the table, then the plots of each figure.
+pub fn html(rows: &[(&str, Claim)], figures: Vec<Part>) -> String {
+    let agreeing = rows.iter().filter(|(_, claim)| claim.agrees()).count();
+    let summary = format!("{agreeing} of {} statements agree.", rows.len());
+    let row =
+        |row: &(&str, Claim)| cells(row, &row.1.verdict.to_string()).map(str::to_owned).to_vec();
+    let table = Part {
+        id: "table".to_owned(),
+        title: "The table".to_owned(),
+        headings: HEADINGS.map(str::to_owned).to_vec(),
+        rows: rows.iter().map(row).collect(),
+        ..Part::default()
     };
-    let body: Vec<String> =
-        rows.iter().map(|row| row_of("td", cells(row, &row.1.verdict.to_string()))).collect();
-    format!(
-        "<!doctype html>\n<html lang=en><meta charset=utf-8><title>The paper and here</title>\n\
-         <style>:root{{color-scheme:light dark}}body{{font:15px/1.4 system-ui,sans-serif;margin:2em}}\
-         table{{border-collapse:collapse}}th,td{{text-align:left;vertical-align:top;\
-         padding:.3em .8em;border-bottom:1px solid #8884}}</style>\n\
-         <h1>The paper's statements and ours</h1>\n<table><thead>{}</thead><tbody>\n{}</tbody></table>\n</html>\n",
-        row_of("th", HEADINGS),
-        body.concat()
-    )
+    let parts: Vec<Part> = std::iter::once(table)
+        .chain(figures.into_iter().filter(|part| !part.figures.is_empty()))
+        .collect();
+    plain::page("The paper's statements and ours", &summary, &parts, &command())
 }

@@ -1,9 +1,12 @@
 //! Tables: a heading, a line, rows; numbers to the right.
 
+use aep_studio::report::plain::Part;
 use comfy_table::{
     Attribute, Cell, CellAlignment, Color, ColumnConstraint, ContentArrangement, LineStyle,
     TableStyle,
 };
+
+use super::heading;
 
 /// Where the cells of a column stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,6 +46,18 @@ impl Table {
             Cell::new(text).set_alignment(alignment(*align)).add_attribute(Attribute::Dim)
         }));
         Self { table, columns }
+    }
+
+    /// The table of a card of a page, below its heading.
+    pub fn of(part: &Part) -> String {
+        let align = |name: &str| if name.starts_with('#') { Align::Right } else { Align::Left };
+        let headings: Vec<(&str, Align)> =
+            part.headings.iter().map(|name| (name.trim_start_matches('#'), align(name))).collect();
+        let mut table = Self::new(&headings);
+        for row in &part.rows {
+            table.row(row.iter().cloned());
+        }
+        heading(&part.title) + &table.text()
     }
 
     /// The table no wider than this where there is no terminal to ask, the margin included.

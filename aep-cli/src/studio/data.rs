@@ -49,8 +49,10 @@ pub fn keep(
             "a .toml says how a recording is read; choose the recording",
         ));
     }
-    // The recording of the models stays as it is until another one takes its place.
-    let name = if project.state.data.as_deref() == Some(name.as_str()) {
+    // The recording of the models stays as it is until another one takes its place; so does the file beside it, which one
+    // of the same name with another ending would share.
+    let stem = |name: &str| Path::new(name).with_extension("");
+    let name = if project.state.data.as_deref().map(stem) == Some(stem(&name)) {
         format!("{}-{name}", project.state.tree.next)
     } else {
         name
@@ -70,6 +72,13 @@ pub fn keep(
 pub fn bring_example(studio: &Studio) -> Result<(), Failure> {
     let [(name, recording), (_, mapping), _] = example::files();
     keep(studio, name, recording.as_bytes(), Some(mapping.as_bytes()))
+}
+
+/// Goes back to the models from what was brought and not taken.
+pub fn leave(studio: &Studio) -> Result<(), Failure> {
+    let mut project = studio.project();
+    project.state.brought = None;
+    project.save()
 }
 
 /// The recording that is looked at: the one brought last.
@@ -125,6 +134,7 @@ fn in_json(mapping: &Mapping) -> Value {
     json.insert("hold".to_owned(), json!(mapping.hold.map(hold_name)));
     json.insert("interval_s".to_owned(), json!(mapping.interval_s));
     json.insert("regressors".to_owned(), json!(mapping.regressors));
+    json.insert("topic".to_owned(), json!(mapping.topic));
     Value::Object(json)
 }
 

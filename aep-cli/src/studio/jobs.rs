@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use aep_studio::words;
 use serde_json::{Value, json};
 
 use super::Studio;
@@ -41,6 +42,7 @@ impl Running {
             "message": self.step.message,
             "effects": self.step.effects,
             "times": self.step.times,
+            "times_said": self.step.times.map(words::times),
             "seconds": self.began.elapsed().as_secs_f64(),
         })
     }

@@ -93,6 +93,8 @@ pub struct Beside {
     pub suggestions: BTreeMap<u32, Value>,
     /// The motion to run next.
     pub motion: Option<Value>,
+    /// The compensator that was simulated, as the page is told, and its card.
+    pub control: Option<(Value, String)>,
     /// Why the last task ended without a result, as the page is told.
     pub failed: Option<Value>,
 }

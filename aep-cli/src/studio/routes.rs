@@ -14,8 +14,6 @@ use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{Html, IntoResponse, Json, Response};
 use axum::routing::{get, post};
 use friction_ident::challenge::Level;
-use friction_ident::family::Decides;
-use missing_physics::report::Rung;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
@@ -23,7 +21,8 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio_stream::StreamExt;
 use tokio_stream::wrappers::BroadcastStream;
 
-use super::{Studio, data, export, guard, jobs, law, riddle, view};
+use super::pictures::Pictured;
+use super::{Studio, data, guard, jobs, law, pictures, riddle, view};
 use crate::failure::{BAD_INPUT, Failure};
 
 /// Largest recording, bytes.
@@ -91,11 +90,14 @@ pub fn router(studio: Arc<Studio>) -> Router {
         .route("/api/preview", get(preview))
         .route("/api/data", get(checked_data))
         .route("/api/course", get(course))
+        .route("/api/remains", get(remains))
+        .route("/api/control", get(control))
         .route("/api/file", get(file))
         .route("/api/upload", post(upload))
         .route("/api/example", post(example))
         .route("/api/check", post(check))
         .route("/api/take", post(take))
+        .route("/api/leave", post(leave))
         .route("/api/task", post(task))
         .route("/api/cancel", post(cancel))
         .route("/api/discard", post(discard))
@@ -202,50 +204,18 @@ async fn checked_data(State(shared): State<Shared>) -> Answer {
     shared.work(|studio| data::check_of_models(studio).map(Json)).await
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Course {
-    /// The model.
-    of: u32,
-    /// Another one to stand beside it, in place of those before it.
-    with: Option<u32>,
+async fn course(State(shared): State<Shared>, Query(asked): Query<Pictured>) -> Answer {
+    shared.work(move |studio| pictures::course(studio, &asked).map(Json)).await
 }
 
-async fn course(State(shared): State<Shared>, Query(asked): Query<Course>) -> Answer {
-    shared.work(move |studio| packed(studio, &asked).map(Json)).await
+async fn remains(State(shared): State<Shared>, Query(asked): Query<Pictured>) -> Answer {
+    shared.work(move |studio| pictures::remains(studio, &asked).map(Json)).await
 }
 
-/// The recording with a model and all before it, or with two models.
-fn packed(studio: &Arc<Studio>, asked: &Course) -> Result<Value, Failure> {
-    let session = studio.session()?;
-    let (ladder, models) = match asked.with {
-        None => {
-            let (_, models) = export::path(studio, &session, asked.of)?;
-            let project = studio.project();
-            let path = project.state.tree.path(asked.of);
-            let named = path.iter().map(|entry| (entry.name.clone(), entry.rung.clone()));
-            (named.collect::<Vec<(String, Rung)>>(), models)
-        }
-        Some(with) => {
-            let project = studio.project();
-            let two = [with, asked.of].map(|id| {
-                let entry = project.state.tree.get(id);
-                let entry =
-                    entry.ok_or_else(|| Failure::bad_input(format!("there is no model {id}")))?;
-                let model = session.family.fitted(&project.model(id)?)?;
-                Ok(((format!("model {id}: {}", entry.name), entry.rung.clone()), model))
-            });
-            let two = two.into_iter().collect::<Result<Vec<_>, Failure>>()?;
-            two.into_iter().unzip()
-        }
-    };
-    if models.is_empty() {
-        return Err(Failure::bad_input(format!("there is no model {}", asked.of)));
-    }
-    let samples = session.family.samples(&models, Decides::Prediction);
-    let ladder: Vec<(String, &Rung)> =
-        ladder.iter().map(|(name, rung)| (name.clone(), rung)).collect();
-    Ok(aep_studio::studio::course(&ladder, &samples))
+/// The compensator that was simulated last.
+async fn control(State(shared): State<Shared>) -> Json<Value> {
+    let project = shared.studio.project();
+    Json(json!({"html": project.beside.control.as_ref().map(|(_, card)| card)}))
 }
 
 #[derive(Deserialize)]
@@ -313,6 +283,10 @@ async fn take(State(shared): State<Shared>, from: Body) -> Answer {
     shared
         .change(move |studio| data::take(studio, &data::mapping(asked.mapping)?, asked.effects))
         .await
+}
+
+async fn leave(State(shared): State<Shared>) -> Answer {
+    shared.change(|studio| data::leave(studio)).await
 }
 
 async fn task(State(shared): State<Shared>, from: Body) -> Answer {

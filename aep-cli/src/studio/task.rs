@@ -54,6 +54,17 @@ pub enum Task {
         /// At least two effects.
         effects: Vec<String>,
     },
+    /// Simulates PD control without and with the compensator of a model.
+    Control {
+        /// The model behind the compensator.
+        from: u32,
+        /// The simulated plant; the same model where none is given.
+        #[serde(default)]
+        plant: Option<u32>,
+        /// What is followed: `sine:5mm,0.5Hz`; a slow ramp where none is given.
+        #[serde(default)]
+        reference: Option<String>,
+    },
     /// Writes a file to take away.
     Export {
         /// The model.
@@ -84,6 +95,7 @@ impl Task {
             Self::Experiment { effects, .. } => {
                 format!("looking for a motion that tells {} apart", effects.join(" from "))
             }
+            Self::Control { .. } => "simulating the compensator".to_owned(),
             Self::Export { form, .. } => format!("writing {}", form.said()),
         }
     }

@@ -33,6 +33,7 @@ pub fn state(studio: &Studio) -> Value {
         "suggestions": chosen.and_then(|id| project.beside.suggestions.get(&id)),
         "said": state.said,
         "motion": project.beside.motion,
+        "control": project.beside.control.as_ref().map(|(said, _)| said),
         "failed": project.beside.failed,
         "riddle": state.riddle.as_ref().map(Riddle::view),
         "points": state.points,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use aep_studio::report::plain;
 use friction_ident::Model;
 use friction_ident::family::{Decides, FrictionFamily};
 use missing_physics::ahead::ByHand;
@@ -21,7 +22,8 @@ use super::session::Session;
 use super::task::Task;
 use super::tree::{By, Entry};
 use super::{Studio, view};
-use crate::args::{MappingArgs, OutputArgs, known, library};
+use crate::args::{LoopArgs, MappingArgs, OutputArgs, ReferenceArgs, known, library};
+use crate::compensation::{self, Case};
 use crate::failure::Failure;
 use crate::report::{Kind, Report};
 use crate::{experiment, output, progress, steps};
@@ -57,6 +59,8 @@ pub enum Done {
     Suggested(u32, Value),
     /// The motion to run next.
     Motion(Value),
+    /// The compensator was simulated: what the page is told, and its card.
+    Control(Value, String),
     /// Files were written.
     Written,
 }
@@ -84,6 +88,7 @@ impl Done {
                 }
                 Self::Suggested(id, view) => drop(project.beside.suggestions.insert(id, view)),
                 Self::Motion(view) => project.beside.motion = Some(view),
+                Self::Control(said, card) => project.beside.control = Some((said, card)),
                 Self::Written => {}
             }
         }
@@ -123,6 +128,9 @@ pub fn done(
         Task::Suggest { from: id } => suggestions(&from(id)?, run),
         Task::Discover { from: id } => discovery(studio, &session, &from(id)?, run),
         Task::Experiment { from: id, effects } => motion(studio, &from(id)?, effects),
+        Task::Control { from, plant, reference } => {
+            control(studio, (*from, plant.unwrap_or(*from)), reference.as_deref())
+        }
         Task::Export { from: id, form } => {
             let is_over = || stop.load(Ordering::Relaxed);
             export::write(studio, &session, &from(id)?, *form, &is_over)?;
@@ -366,6 +374,38 @@ fn write_report(
         more: Vec::new(),
     };
     report.save(&args).map(drop)
+}
+
+/// PD control of `plant` without and with the compensator of `model`.
+fn control(
+    studio: &Studio,
+    (model, plant): (u32, u32),
+    reference: Option<&str>,
+) -> Result<Done, Failure> {
+    let (names, path) = {
+        let project = studio.project();
+        let [of_model, of_plant] = [model, plant].map(|id| {
+            let entry = project.state.tree.get(id);
+            let entry =
+                entry.ok_or_else(|| Failure::bad_input(format!("there is no model {id}")))?;
+            Ok::<_, Failure>((entry.name.clone(), project.model_path(id)))
+        });
+        let (of_model, of_plant) = (of_model?, of_plant?);
+        let place = project.place("exports", &format!("control-{model}-{plant}.html"))?;
+        ([of_model, of_plant], place)
+    };
+    let [model, plant] = [&names[0].1, &names[1].1].map(|path| compensation::read(path));
+    let (model, plant) = (model?, plant?);
+    let (servo, settings) = LoopArgs::default().build(&model, None)?;
+    let reference = ReferenceArgs::of_shape(reference, model.axis(), settings.sample_time)?;
+    let case = Case { model, plant, servo, settings, reference };
+    let both = case.run()?;
+    let part = case.part(&both);
+    let of = format!("Compensator of {}, plant {}. ", names[0].0, names[1].0);
+    let said = of + &both.said().unwrap_or_default();
+    let parts = std::slice::from_ref(&part);
+    output::save(&path, &plain::page("Friction compensation, simulated", &said, parts, ""))?;
+    Ok(Done::Control(json!({"said": said}), plain::part(&part)))
 }
 
 fn motion(studio: &Studio, from: &From, effects: &[String]) -> Result<Done, Failure> {

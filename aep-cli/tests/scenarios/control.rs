@@ -16,7 +16,7 @@ const PLANT: &str = r#"{"axis":"linear","mass":40.0,"effects":[
 #[test]
 fn the_papers_table_is_compensated_without_any_file() {
     let desk = Desk::new();
-    let run = desk.aep("control --json m.json -o run.csv --plot run.svg");
+    let run = desk.aep("control --json m.json -o run.csv --plot run.svg --html run.html");
     for part in ["RMS tracking error", "stick episodes", "limit cycle", "% less RMS error"] {
         assert!(run.done().contains(part), "{part}: {}", run.out);
     }
@@ -27,6 +27,8 @@ fn the_papers_table_is_compensated_without_any_file() {
     assert_eq!(desk.read("run.csv").lines().next(), Some(header));
     assert_eq!(desk.read("run.csv").lines().count(), 2002);
     assert!(desk.read("run.svg").contains("tracking error, µm"));
+    let page = desk.read("run.html");
+    assert!(page.contains("% less RMS error") && page.matches("<figure").count() == 3);
 }
 
 #[test]

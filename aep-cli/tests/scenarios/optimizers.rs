@@ -6,7 +6,7 @@ use crate::harness::Desk;
 fn optimizers_are_compared_with_curves_trials_and_a_plot() {
     let desk = Desk::new();
     let line = "optimize rosenbrock --dimension 3 --algorithm aep-practical,de --trials 8 \
-                --evaluations 12000 -o out --json -";
+                --evaluations 12000 -o out --html page.html --json -";
     let run = desk.aep(&format!("{line} --quiet"));
     let json: serde_json::Value = serde_json::from_str(run.done()).unwrap();
     assert_eq!(json["summaries"][0]["method"], "aep-practical");
@@ -15,6 +15,10 @@ fn optimizers_are_compared_with_curves_trials_and_a_plot() {
     assert!(desk.read("out/curves.csv").starts_with("optimizer,evaluations,mean,median,"));
     assert_eq!(desk.read("out/trials.csv").lines().count(), 1 + 2 * 8);
     assert!(desk.read("out/curves.svg").contains("aep-practical"));
+    let page = desk.read("page.html");
+    assert!(page.contains("<td class=num>8/8</td>") && page.contains("log10 of cost"));
+    // Both curves with their quartiles.
+    assert_eq!((page.matches("<polyline class").count(), page.matches("<polygon class").count()), (2, 2));
 }
 
 #[test]
@@ -62,8 +66,12 @@ fn figures_made_before_are_kept_and_others_made_again() {
     let table = desk.read("paper/table.md");
     assert!(table.starts_with("| figure | about |") && table.contains("| fig4 | AEP |"));
     assert!(desk.read("paper/table.html").contains("<td>fig4</td>"));
+    let page = desk.read("paper/table.html");
+    assert!(page.contains("<section id=\"fig4\">") && page.contains("<polyline class"));
     let again = desk.aep(&format!("{line} 5"));
     assert!(again.done().contains("kept fig4"));
+    let figures = |page: &str| page.matches("<polyline class").count();
+    assert_eq!(figures(&desk.read("paper/table.html")), figures(&page));
     assert_eq!(desk.read("paper/table.md"), table);
     // Other conditions, a missing file, a record that is none: made again.
     assert!(!desk.aep(&format!("{line} 6")).done().contains("kept fig4"));
@@ -128,5 +136,6 @@ fn a_saved_run_goes_on_to_the_same_end_and_a_broken_file_is_refused() {
         resumed.refused(&["another problem", "powers in 6 components"]);
     }
     desk.aep("optimize f1 --algorithm aep,de --trace a.csv").refused(&["single run"]);
+    desk.aep("optimize f1 --algorithm aep --trace a.csv --html a.html").refused(&["no page"]);
     desk.aep("optimize f1 --algorithm aep --trace a.txt").refused(&[".csv or a .jsonl"]);
 }

@@ -17,6 +17,7 @@ pub const TESTS: &[(&str, Test)] = &[
     ("a_page_outlives_its_server_and_offers_what_was_cut_off", restarted),
     ("a_recording_is_chosen_mapped_and_refused_in_words", mapped),
     ("a_law_is_drawn_while_it_is_typed_and_added", law),
+    ("a_regime_is_looked_at_alone_and_the_compensator_simulated", simulated),
     ("no_name_of_a_column_becomes_a_script", evil),
     ("on_a_telephone_the_studio_does_not_stick_out", narrow),
 ];
@@ -216,6 +217,41 @@ fn law(chromium: &str) {
     drawn(&mut tab, 2);
     assert_eq!(text(&mut tab, ".node.chosen .node-name"), "+ my-law");
     is_clean_but_refusals(&tab);
+}
+
+fn simulated(chromium: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let server = Server::start(&folder.path().join("p"), None);
+    server.example();
+    let mut tab = opened(chromium, &server);
+    drawn(&mut tab, 1);
+    tab.until("Boolean(document.querySelector('[data-show=remains] .canvas canvas'))");
+    let before = picture(&mut tab);
+    tab.eval("document.querySelector('.pictures .key button').click()");
+    assert!(text(&mut tab, "[data-show=region]").contains("of the squared residual"));
+    assert_ne!(picture(&mut tab), before);
+    press(&mut tab, "control", "Simulate");
+    tab.until("document.querySelector('[data-part=control]').innerText.includes('less RMS error')");
+    tab.until("Boolean(document.querySelector('[data-part=control] figure'))");
+    tab.eval("document.querySelector('[data-part=control] figure').scrollIntoView()");
+    tab.until("Boolean(document.querySelector('[data-part=control] .canvas canvas'))");
+    // A value that is not there fixes nothing at 0.
+    tab.eval("document.querySelector('[data-part=parameters] input[type=number]').value = ''");
+    press(&mut tab, "parameters", "Fix it");
+    tab.until("document.querySelector('[data-part=notices]').innerText.includes('at which value')");
+    // The e of a number is no parameter; the curve stands beside the model that is looked at.
+    tab.eval(
+        "(() => { const i = document.querySelector('[data-part=law] [aria-label=law]'); i.value = '2e-3*v'; i.dispatchEvent(new Event('input', {bubbles: true})); })()",
+    );
+    tab.until("Boolean(document.querySelector('[data-part=law] .canvas canvas'))");
+    assert_eq!(
+        tab.eval("document.querySelectorAll('[data-part=law] tbody tr').length"),
+        json!(0)
+    );
+    tab.eval("document.querySelector('[data-part=law] .canvas').dataset.old = 'yes'");
+    server.task(&json!({"task": "add", "from": 0, "effect": "stribeck"}));
+    tab.until("!document.querySelector('[data-part=law] .canvas')?.dataset.old");
+    is_clean(&tab);
 }
 
 fn evil(chromium: &str) {

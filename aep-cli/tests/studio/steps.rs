@@ -20,6 +20,9 @@ pub const TESTS: &[(&str, Test)] = &[
     ("a_riddle_is_guessed_and_counted", riddle),
     ("another_recording_begins_another_tree_and_files_stay", another),
     ("everything_can_be_taken_away", exports),
+    ("the_compensator_is_simulated_on_any_plant_of_the_tree", compensated),
+    ("what_is_left_is_told_beside_what_was_left_before", remains),
+    ("what_was_brought_can_be_left_and_takes_nothing_from_the_models", left),
     ("a_model_of_ones_own_is_a_column", own_model),
     ("started_again_with_its_file_a_project_goes_on", goes_on),
     ("times_of_a_real_axis", times),
@@ -316,6 +319,76 @@ fn exports() {
     assert!(
         server.get(&format!("/api/file?path={motion}")).text().starts_with("time_s,position_m")
     );
+}
+
+fn compensated() {
+    let (folder, server) = served();
+    server.example();
+    server.task(&json!({"task": "add", "from": 0, "effect": "stribeck"}));
+    assert!(server.get("/api/control").json()["html"].is_null());
+    let reference = "reversal:1mm/s,2s";
+    let control = |from: u32, plant: u32| {
+        let asked =
+            json!({"task": "control", "from": from, "plant": plant, "reference": reference});
+        server.task(&asked)["control"]["said"].as_str().unwrap().to_owned()
+    };
+    let error = |from: u32, plant: u32| {
+        let said = control(from, plant);
+        assert!(said.contains("% less RMS error"), "{said}");
+        let at = |name: &str| folder.path().join("p/models").join(name).display().to_string();
+        // The command says the same of the same files.
+        let (model, plant) = (at(&format!("{from}.json")), at(&format!("{plant}.json")));
+        let words = ["control", "--model", &model, "--plant", &plant, "--reference", reference];
+        let told = aep(&words);
+        let less = said.split(". ").last().unwrap();
+        assert!(told.contains(less), "{said}: {told}");
+        told.lines().find(|line| line.contains("RMS tracking error")).unwrap().to_owned()
+    };
+    // A plant that has the effect is followed better with the compensator that has it.
+    assert_ne!(error(0, 1), error(1, 1));
+    let card = server.get("/api/control").json()["html"].as_str().unwrap().to_owned();
+    assert!(card.contains("PD + compensation") && card.matches("<figure").count() == 3);
+    let page = server.get("/api/file?path=exports/control-1-1.html").text();
+    assert!(page.contains("Friction compensation, simulated") && page.contains("data-plot="));
+    // No file is read, whatever it is called.
+    for refused in ["/etc/passwd", "../../x.csv", "sine:5mm", "ramp:1e-9m/s,2", "sine:1mm,1e-9Hz"] {
+        server.post("/api/task", &json!({"task": "control", "from": 0, "reference": refused}));
+        assert!(!server.idle()["failed"]["what"].is_null(), "{refused}");
+    }
+    server.post("/api/task", &json!({"task": "control", "from": 0, "plant": 9}));
+    assert!(server.idle()["failed"]["what"].as_str().unwrap().contains("no model 9"));
+}
+
+fn remains() {
+    let (_folder, server) = served();
+    server.example();
+    server.task(&json!({"task": "add", "from": 0, "effect": "stribeck"}));
+    let html = |query: &str| {
+        let answer = server.get(&format!("/api/remains?{query}")).json();
+        answer["html"].as_str().unwrap().to_owned()
+    };
+    let (alone, both) = (html("of=0"), html("of=1"));
+    assert!(alone.contains("Autocorrelation of the residual") && alone.contains("class=\"band"));
+    assert!(!alone.contains("base model") && both.contains("base model"));
+    assert!(both.contains("Of the force along the measured motion: The residual is"), "{both}");
+    assert_ne!(html("of=0&with=1"), both);
+    assert_eq!(server.get("/api/remains?of=7").status, 400);
+}
+
+fn left() {
+    let (folder, server) = served();
+    server.example();
+    let models = server.state()["models"].clone();
+    let beside = folder.path().join("p/data/recording.toml");
+    let read = std::fs::read_to_string(&beside).unwrap();
+    // Of the same name with another ending: how the models' recording is read is not its own.
+    assert_eq!(server.post_bytes("/api/upload?name=recording.mat", b"no such thing").status, 200);
+    assert_eq!(server.get("/api/preview").status, 400);
+    assert_eq!(std::fs::read_to_string(&beside).unwrap(), read);
+    server.post("/api/leave", &json!({}));
+    let state = server.state();
+    assert_eq!((&state["brought"], &state["models"]), (&Value::Null, &models));
+    assert_eq!(server.get("/api/course?of=0").status, 200);
 }
 
 fn own_model() {

@@ -2,7 +2,7 @@
 //
 // spec: {title, x: {label, unit, log, inverse}, y: {label, unit, log}, data: [x, ...y], series: [{label, colour, width,
 // alpha, dots, hidden, quiet, unit}], bands: [{of: [high, low], colour}], marks: [{at, label}], group, height,
-// behind(chart, pen), note(index)}. Values are in SI units; null is a gap.
+// behind(chart, pen), note(index), onClick(x), onWhole()}. Values are in SI units; null is a gap.
 // `inverse` is a unit: the abscissa is a frequency and its ticks are told as periods in it.
 
 const element = (tag, attributes = {}, ...children) => {
@@ -50,10 +50,8 @@ function titleOf(chart, scale) {
   return labelled(label, prefixed(Math.max(Math.abs(min), Math.abs(max)), unit).unit);
 }
 
-const chartsDrawn = [];
-
 function chart(host, spec) {
-  const made = { spec, host, group: spec.group, log: Boolean(spec.x.log), onShow: spec.onShow };
+  const made = { spec, host, group: spec.group, log: Boolean(spec.x.log) };
   made.xTitle = () => titleOf(made, "x");
   made.yTitle = () => titleOf(made, "y");
   made.extent = extentOf(spec);
@@ -66,7 +64,6 @@ function chart(host, spec) {
   host.setAttribute("role", "group");
   host.setAttribute("aria-label", `${spec.title}. ${spec.x.label} across, ${spec.y.label} up. ${HELP}`);
   host.classList.add("chart");
-  canvas.title = "";
   made.plot = new uPlot(options(made, canvas), spec.data, canvas);
   made.buttons = spec.series.map((series, k) => (series.quiet ? null : legendButton(made, series, k + 1)));
   legend.append(...made.buttons.filter(Boolean));
@@ -77,18 +74,17 @@ function chart(host, spec) {
     if (width > 0 && width !== made.plot.width) made.plot.setSize({ width, height: heightOf(spec) });
   }).observe(canvas);
   made.redraw = () => made.plot.redraw(false, true);
-  redrawn.add(made.redraw);
-  chartsDrawn.push(made);
+  plots.add(made);
   return made;
 }
 
-// Charts whose place on the page is gone.
+// Plots whose place on the page is gone.
 function forgetGone() {
-  for (const made of chartsDrawn.filter((made) => !made.host.isConnected)) {
+  for (const made of plots) {
+    if (made.host.isConnected) continue;
     made.plot?.destroy();
-    if (made.group) members(made.group).delete(made);
-    redrawn.delete(made.redraw);
-    chartsDrawn.splice(chartsDrawn.indexOf(made), 1);
+    if (made.group) leave(made);
+    plots.delete(made);
   }
 }
 
@@ -263,12 +259,15 @@ function tools(made) {
   );
 }
 
-// New data behind the same axes; what is shown stays.
+// New data behind the same axes; what is shown stays, or all of it.
 function redata(made, data) {
   const { min, max } = made.plot.scales.x;
-  const [low, high] = extentOf(made.spec);
-  made.spec.data = data;
-  made.plot.setData(data, false);
+  const [low, high] = made.extent;
   // Before it was drawn once a plot has no limits.
-  made.plot.setScale("x", { min: min ?? low, max: max ?? high });
+  const isWhole = min == null || (min <= low && max >= high);
+  made.spec.data = data;
+  made.extent = extentOf(made.spec);
+  made.plot.setData(data, false);
+  const [from, to] = isWhole ? made.extent : [min, max];
+  made.plot.setScale("x", { min: from, max: to });
 }

@@ -4,11 +4,13 @@ const style = () => getComputedStyle(document.documentElement);
 let known = {};
 const colour = (name) => (known[name] ??= style().getPropertyValue(`--${name}`).trim());
 
-const redrawn = new Set();
+// Everything that is drawn with them, by what draws it anew.
+const plots = new Set();
 function forgetColours() {
   known = {};
-  for (const redraw of redrawn) redraw();
+  for (const plot of plots) plot.redraw();
 }
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", forgetColours);
 
 // A colour with some of it seen through; colours of the style sheet are #rrggbb.
 const through = (hex, alpha) => hex + Math.round(255 * alpha).toString(16).padStart(2, "0");

@@ -68,16 +68,19 @@ function enliven(figure) {
   chart(host, spec);
 }
 
-function watchFigures(root) {
+// Does something with each element once it comes near to what is seen.
+function whenSeen(elements, act) {
   const watcher = new IntersectionObserver(
     (entries) => {
       for (const { isIntersecting, target } of entries) {
         if (!isIntersecting || target.clientWidth === 0) continue;
         watcher.unobserve(target);
-        enliven(target);
+        act(target);
       }
     },
     { rootMargin: "300px" },
   );
-  root.querySelectorAll("figure[data-plot]").forEach((figure) => watcher.observe(figure));
+  elements.forEach((one) => watcher.observe(one));
 }
+
+const watchFigures = (root) => whenSeen(root.querySelectorAll("figure[data-plot]"), enliven);

@@ -22,11 +22,12 @@ function cellsOf(xs, ys, values, across, up) {
   return { across, up, mean: sum.map((value, k) => (count[k] ? value / count[k] : NaN)), count, x, y };
 }
 
-// spec: {title, x: {label, unit}, y: {label, unit}, z: {label, unit}, height}; `paint(cells, limit)` draws anew.
+// spec: {title, x: {label, unit}, y: {label, unit}, z: {label, unit}, height, onClick(area, name)}; `paint(cells, limit)` draws
+// anew. `area(x, y)` holds near the cell that was clicked.
 function heatmap(host, spec) {
   const canvas = element("canvas", { role: "img" });
   const readout = element("span", { class: "at" });
-  const made = { cells: null, limit: 1 };
+  const made = { host, cells: null, limit: 1 };
   const fileButton = (name, title, act) => element("button", { type: "button", title, onclick: act }, name);
   const tools = element(
     "span",
@@ -39,31 +40,48 @@ function heatmap(host, spec) {
   const box = { left: 56, top: 18, right: 64, bottom: 40 };
   const size = () => ({ width: host.clientWidth, height: spec.height });
   const draw = () => made.cells && drawMap(canvas, made, spec, box, size());
+  made.redraw = draw;
   made.paint = (cells, limit, label) => {
     Object.assign(made, { cells, limit });
     canvas.setAttribute("aria-label", label);
     draw();
   };
   new ResizeObserver(draw).observe(host);
-  redrawn.add(draw);
-  chartsDrawn.push({ host, redraw: draw });
-  canvas.addEventListener("pointermove", (event) => {
+  plots.add(made);
+  // The place of an event in shares of the map; nothing outside it.
+  const placed = (event) => {
     const { left, top } = canvas.getBoundingClientRect();
     const { width, height } = size();
-    const [u, v] = [
-      (event.clientX - left - box.left) / (width - box.left - box.right),
-      1 - (event.clientY - top - box.top) / (height - box.top - box.bottom),
-    ];
+    const u = (event.clientX - left - box.left) / (width - box.left - box.right);
+    const v = 1 - (event.clientY - top - box.top) / (height - box.top - box.bottom);
+    return made.cells && u >= 0 && u < 1 && v >= 0 && v < 1 ? [u, v] : null;
+  };
+  const along = ([low, high], share) => low + share * (high - low);
+  canvas.addEventListener("click", (event) => {
+    const place = placed(event);
+    if (!place) return;
     const { cells } = made;
-    if (!cells || u < 0 || u >= 1 || v < 0 || v >= 1) return void (readout.textContent = "");
+    const around = (share, range, count) => [share - NEAR / count, share + NEAR / count].map((end) => along(range, Math.min(Math.max(end, 0), 1)));
+    const [x, y] = [around(place[0], cells.x, cells.across), around(place[1], cells.y, cells.up)];
+    const named = ({ label, unit }, [low, high]) => `${label} ${quantity(low, unit)} to ${quantity(high, unit)}`;
+    spec.onClick?.((a, b) => a >= x[0] && a <= x[1] && b >= y[0] && b <= y[1], `${named(spec.x, x)}, ${named(spec.y, y)}`);
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const { cells } = made;
+    const inside = placed(event);
+    if (!inside) return void (readout.textContent = "");
+    const [u, v] = inside;
     const [column, row] = [Math.floor(u * cells.across), Math.floor(v * cells.up)];
     const at = row * cells.across + column;
-    const place = `${spec.x.label} ${quantity(cells.x[0] + u * (cells.x[1] - cells.x[0]), spec.x.unit)}, ${spec.y.label} ${quantity(cells.y[0] + v * (cells.y[1] - cells.y[0]), spec.y.unit)}`;
+    const place = `${spec.x.label} ${quantity(along(cells.x, u), spec.x.unit)}, ${spec.y.label} ${quantity(along(cells.y, v), spec.y.unit)}`;
     readout.textContent = cells.count[at] ? `${place}: mean ${quantity(cells.mean[at], spec.z.unit)} of ${cells.count[at]} samples` : `${place}: no samples`;
   });
   canvas.addEventListener("pointerleave", () => (readout.textContent = ""));
   return made;
 }
+
+// How many cells to either side of a click belong to it.
+const NEAR = 2.5;
 
 function drawMap(canvas, { cells, limit }, spec, box, { width, height }) {
   const ratio = devicePixelRatio || 1;

@@ -1,5 +1,12 @@
 // The first screen: every picture of a recording and its models, moved together by one slider over the models.
 
+// A page of several axes has one for each: the first is drawn at once, others when they come into view.
+function watchScreens() {
+  const sections = [...document.querySelectorAll("section.screen")];
+  if (sections.length) screen(sections.shift());
+  whenSeen(sections, (section) => screen(section));
+}
+
 const BASE = "c2";
 const CHOSEN = "c1";
 const MOMENTS = 5;
@@ -8,7 +15,7 @@ const REGIME_TINTS = ["t0", "t1", "t2", "t3", "t4", "t5", "t6"];
 function screen(section, raw = JSON.parse(section.querySelector("script.course").textContent)) {
   const course = courseOf(raw);
   const decides = course.compared.findIndex((compared) => compared.decides);
-  const state = { course, section, model: course.models.length - 1, compared: 0, decides: Math.max(decides, 0), group: `time-${section.id || Math.random()}`, regimes: false };
+  const state = { course, section, residuals: new Map(), region: null, model: course.models.length - 1, compared: 0, decides: Math.max(decides, 0), group: `time-${section.id || Math.random()}`, regimes: false };
   // Between pieces nothing is known: an instant without values.
   state.rows = rowsOf(course);
   state.time = state.rows.map(([k, next]) => (next == null ? course.time[k] : (course.time[k] + course.time[next]) / 2));
@@ -24,18 +31,6 @@ function rowsOf(course) {
     rows.push([k, null]);
   }
   return rows;
-}
-
-// What a model leaves where it is compared; NaN elsewhere.
-function residualOf(state, model) {
-  const compared = state.course.compared[state.compared];
-  state.residuals ??= new Map();
-  const key = `${state.compared} ${model}`;
-  if (!state.residuals.has(key)) {
-    const values = compared.residuals[model];
-    state.residuals.set(key, values.map((value, k) => (compared.leftOut[k] < 0 ? value : NaN)));
-  }
-  return state.residuals.get(key);
 }
 
 const drawn = (state, values) => state.rows.map(([k, next]) => (next == null && isFinite(values[k]) ? values[k] : null));
@@ -57,15 +52,16 @@ function build(state) {
   const note = (row) => noteOf(state, row);
   const behind = (chart, pen) => background(state, chart, pen);
   const time = { label: "time", unit: "s" };
+  const clicks = { onClick: (instant) => lookAround(state, instant), onWhole: () => state.region && lookAt(state, null) };
   const several = course.models.length > 1;
   const seriesOf = (first) => [...first, ...(several ? [{ ...base }] : []), { ...chosen }];
   state.fit = chart(at("fit"), {
     title: `Measured and predicted ${compared().name}`, x: time, y: { label: compared().name, unit: compared().unit },
-    data: fitData(state), series: seriesOf([{ label: "measured", colour: "c0", width: 2.6 }]), group, height: 250, behind, note,
+    data: fitData(state), series: seriesOf([{ label: "measured", colour: "c0", width: 2.6 }]), group, height: 250, behind, note, ...clicks,
   });
   state.left = chart(at("residual"), {
     title: `Residual: measured less predicted ${compared().name}`, x: time, y: { label: "residual", unit: compared().unit },
-    data: leftData(state), series: seriesOf([]), group, height: 196, behind, note,
+    data: leftData(state), series: seriesOf([]), group, height: 196, behind, note, ...clicks,
     held: () => state.heldLeft,
     get marks() { return state.moments?.map(({ at: where }, k) => ({ at: where, label: String(k + 1) })) ?? []; },
   });
@@ -124,7 +120,7 @@ function slider(state, host) {
 
 // What is compared, and whether regimes are shown.
 function choices(state, host) {
-  const { compared, regimes } = state.course;
+  const { compared } = state.course;
   const pick = (k) => {
     state.compared = k;
     state.fit.spec.title = `Measured and predicted ${compared[k].name}`;
@@ -143,12 +139,11 @@ function choices(state, host) {
       pick(k);
     }),
   );
-  const keyOf = element("span", { class: "key", hidden: true }, ...regimes.map((name, k) => element("span", {}, element("i", { class: REGIME_TINTS[k % 7] }), name)));
+  const keyOf = element("span", { class: "key", role: "group", "aria-label": "regimes" }, ...regimeButtons(state));
   const bands = element("button", { type: "button", "aria-pressed": "false", title: "Colour the regimes of the motion" }, "regimes");
   bands.addEventListener("click", () => {
     state.regimes = !state.regimes;
     bands.setAttribute("aria-pressed", String(state.regimes));
-    keyOf.hidden = !state.regimes;
     state.fit.redraw();
     state.left.redraw();
   });
@@ -191,6 +186,8 @@ function choose(state, wanted) {
     }
   }
   moments(state);
+  drawRegion(state, state.section.querySelector("[data-show=region]"));
+  state.tellRegimes();
   redata(state.fit, fitData(state));
   redata(state.left, leftData(state));
   state.profile?.update();
@@ -204,10 +201,10 @@ function limits(values, tail = 0.001) {
   return [known[Math.floor(known.length * tail)], known[Math.ceil(known.length * (1 - tail)) - 1]];
 }
 
-// Where a model errs most: stretches of a hundredth of the recording's length with the largest rms.
+// Where a model errs most in all of the recording: stretches of a hundredth of its length with the largest rms.
 function moments(state) {
   const { time, regime, regimes } = state.course;
-  const residual = residualOf(state, state.model);
+  const residual = residualWhere(state, state.model, everywhere);
   const length = (time[time.length - 1] - time[0]) / 100;
   const found = [];
   let [from, sum, count] = [0, 0, 0];
@@ -236,7 +233,7 @@ function moments(state) {
   const button = (moment, k) =>
     element(
       "button",
-      { type: "button", title: "show this stretch in all plots over time", onclick: () => show(state.left, time[moment.start] - 2 * length, time[moment.end] + 2 * length) },
+      { type: "button", title: "look at this stretch alone", onclick: () => lookAtStretch(state, moment.start, moment.end) },
       element("b", {}, `${k + 1}`),
       ` ${number(moment.at, 4)} s: ${quantity(moment.rms, unit)} rms${moment.regime ? `, ${moment.regime}` : ""}`,
     );
@@ -313,11 +310,7 @@ function profile(state, host) {
   };
   picker.addEventListener("change", () => {
     made.track = Number(picker.value);
-    Object.assign(made.chart.spec, axes());
-    made.held = several ? limits(means(0).mean) : null;
-    made.chart.spec.data = data();
-    made.chart.extent = extentOf(made.chart.spec);
-    made.chart.plot.setData(made.chart.spec.data);
+    made.update();
     whole(made.chart);
   });
   return made;
@@ -328,6 +321,8 @@ function zeroLine(made, pen) {
   const y = made.plot.valToPos(0, "y", true);
   pen.save();
   pen.strokeStyle = colour("soft");
+  pen.lineWidth = devicePixelRatio || 1;
+  pen.setLineDash([]);
   pen.beginPath();
   pen.moveTo(left, y);
   pen.lineTo(left + width, y);
@@ -373,6 +368,7 @@ function map(state, host) {
     y: { label: "velocity", unit: velocity.unit },
     z,
     height: 186,
+    onClick: (area, name) => lookAt(state, { name, holds: (k) => area(position.values[k], velocity.values[k]) }),
   });
   const cells = (model) => cellsOf(position.values, velocity.values, residualOf(state, model), 72, 36);
   return {

@@ -1,20 +1,10 @@
 // Begins when the page stands.
 
 document.documentElement.classList.add("scripted");
-document.querySelectorAll("section.screen").forEach((section) => screen(section));
+watchScreens();
 watchFigures(document);
 
-// What is folded is printed, too, and opened where a link leads into it.
-const unfold = () => document.querySelectorAll("details:not([open])").forEach((folded) => {
-  folded.open = true;
-  folded.dataset.printed = "yes";
-});
-const fold = () => document.querySelectorAll("details[data-printed]").forEach((opened) => {
-  opened.open = false;
-  delete opened.dataset.printed;
-});
-addEventListener("beforeprint", unfold);
-addEventListener("afterprint", fold);
+// What is folded is opened where a link leads to it.
 const reach = () => {
   const target = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!target) return;
@@ -23,4 +13,3 @@ const reach = () => {
 };
 addEventListener("hashchange", reach);
 reach();
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", forgetColours);

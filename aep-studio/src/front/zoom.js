@@ -7,6 +7,12 @@ function members(group) {
   return groups.get(group);
 }
 
+function leave(chart) {
+  const others = members(chart.group);
+  others.delete(chart);
+  if (!others.size) groups.delete(chart.group);
+}
+
 // Shows [min, max] of the abscissa in a plot and in all of its group, never beyond the data.
 function show(chart, min, max) {
   const [low, high] = chart.extent;
@@ -22,10 +28,12 @@ function show(chart, min, max) {
   for (const other of all) {
     other.plot.setScale("x", { min: from, max: from + width });
   }
-  chart.onShow?.(from, from + width);
 }
 
-const whole = (chart) => show(chart, ...chart.extent);
+const whole = (chart) => {
+  chart.spec.onWhole?.();
+  show(chart, ...chart.extent);
+};
 
 // Around `at` by `factor`; below 1 it comes nearer.
 function zoomBy(chart, factor, at) {
@@ -77,7 +85,15 @@ function zoomable(chart, over, host) {
     event.preventDefault();
     event.stopPropagation();
   });
-  over.addEventListener("pointerdown", () => host.focus({ preventScroll: true }));
+  let pressed = 0;
+  over.addEventListener("pointerdown", (event) => {
+    host.focus({ preventScroll: true });
+    pressed = event.clientX;
+  });
+  // A drag ends with a click, too; so does what becomes a double click.
+  over.addEventListener("click", (event) => {
+    if (Math.abs(event.clientX - pressed) < 4 && event.detail < 2 && !event.shiftKey) chart.spec.onClick?.(at(left(event)));
+  });
   // The wheel scrolls the page until the plot was clicked.
   over.addEventListener(
     "wheel",

@@ -45,11 +45,12 @@ pub fn axes(file: &str, axes: &[AxisPage<'_>], command: &str) -> String {
 
 fn article(axis: &AxisPage<'_>, discovery: &Discovery) -> String {
     let place = place(axis.name);
-    // Every axis has the same sections, but an id stands on a page once. Texts of users are escaped: in them there
-    // is no such quotation mark.
+    // Every axis has the same sections and effects, but an id stands on a page once. Texts of users are escaped: in them
+    // there is no such quotation mark.
     let sections = sections(discovery, axis.source, axis.check)
         .concat()
-        .replace("<section id=\"", &format!("<section id=\"{place}-"));
+        .replace(" id=\"", &format!(" id=\"{place}-"))
+        .replace(" href=\"#", &format!(" href=\"#{place}-"));
     format!("<article id=\"{place}\">{sections}</article>\n")
 }
 

@@ -33,7 +33,7 @@ pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
     let others = if others.is_empty() {
         others
     } else {
-        format!("<h3>Effects that are not in the model</h3>{others}")
+        format!("<h3>Effects that are not in the model</h3><div class=others>{others}</div>")
     };
     html::section("effects", "The effects", LEAD, &(concat(found.iter().map(card)) + &others))
 }

@@ -3,7 +3,7 @@
 
 use missing_physics::Discovery;
 use missing_physics::measurement::quantity::quantity;
-use missing_physics::report::{Curve, Diagnosis, Plot, ResidualMap};
+use missing_physics::report::{Curve, Diagnosis, Plot, ResidualMap, Whiteness};
 
 use crate::front::Named;
 use crate::html::{self, concat, escape, table};
@@ -20,7 +20,11 @@ const MAPS: usize = 6;
 /// The section; nothing where nothing was looked at.
 pub(super) fn section(discovery: &Discovery) -> String {
     let Some(diagnosis) = &discovery.diagnosis else { return String::new() };
-    let body = tests(diagnosis) + &lines(discovery, diagnosis) + &maps(discovery, diagnosis);
+    let base = discovery.diagnosis_base.as_ref().and_then(|base| base.whiteness.as_ref());
+    let resembles = diagnosis.whiteness.as_ref().and_then(|last| autocorrelation(base, last));
+    let drawn = concat(resembles.into_iter()) + &maps(discovery, diagnosis);
+    let drawn = if drawn.is_empty() { drawn } else { format!("<div class=figures>{drawn}</div>") };
+    let body = tests(diagnosis) + &lines(discovery, diagnosis) + &drawn;
     if body.is_empty() {
         return String::new();
     }
@@ -83,8 +87,36 @@ fn maps(discovery: &Discovery, diagnosis: &Diagnosis) -> String {
             base.and_then(|base| base.maps.iter().find(|other| other.coordinate == map.coordinate));
         figure(discovery, of_base, map)
     });
-    let figures = concat(figures);
-    if figures.is_empty() { figures } else { format!("<div class=figures>{figures}</div>") }
+    concat(figures)
+}
+
+/// How much the residual resembles itself some time later, with what it would be were it white.
+pub(crate) fn autocorrelation(base: Option<&Whiteness>, last: &Whiteness) -> Option<String> {
+    const WHITE: &str = "white noise, 95 %";
+    let lags = |test: &Whiteness| -> Vec<f64> {
+        (1..=test.autocorrelation.len()).map(|k| test.interval_s * k as f64).collect()
+    };
+    let curve = |label: &str, test: &Whiteness, y: &[f64]| Curve {
+        label: label.to_owned(),
+        x: lags(test),
+        y: y.to_vec(),
+    };
+    let name = if base.is_some() { "last model" } else { "the model (last)" };
+    let of_base = base.map(|base| curve("base model", base, &base.autocorrelation));
+    let plot = Plot {
+        title: "Autocorrelation of the residual".to_owned(),
+        x_label: "lag / s".to_owned(),
+        y_label: "correlation".to_owned(),
+        curves: std::iter::once(curve(WHITE, last, &last.expected))
+            .chain(of_base)
+            .chain([curve(name, last, &last.autocorrelation)])
+            .collect(),
+    };
+    let edge = |sign: f64| -> Vec<f64> {
+        last.expected.iter().zip(&last.bound).map(|(middle, half)| middle + sign * half).collect()
+    };
+    let band = Band { label: WHITE.to_owned(), x: lags(last), low: edge(-1.0), high: edge(1.0) };
+    plot::figure_with_bands(&plot, &[band])
 }
 
 fn figure(discovery: &Discovery, base: Option<&ResidualMap>, last: &ResidualMap) -> Option<String> {

@@ -21,6 +21,7 @@ pub(super) fn section(discovery: &Discovery, source: &Source) -> String {
          <div class=\"choices live\" data-show=choices></div></div>\
          <div class=panes><div>\
          <div class=live data-show=fit></div><div class=live data-show=residual></div>\
+         <div class=\"region live\" data-show=region aria-live=polite></div>\
          <div class=\"moments live\" data-show=moments></div>\
          <div class=\"figures fallback\">{still}</div></div>\
          <div><h3>Error from model to model</h3>{}\

@@ -169,6 +169,16 @@ impl Tab {
         std::fs::write(path, engine.decode(taken["data"].as_str().unwrap()).unwrap()).unwrap();
     }
 
+    /// How many pages of paper it takes.
+    pub fn pages(&mut self) -> usize {
+        let printed = self.ask("Page.printToPDF", &json!({"printBackground": true}));
+        let engine = base64::engine::general_purpose::STANDARD;
+        let pdf = engine.decode(printed["data"].as_str().unwrap()).unwrap();
+        let (page, pages) = (b"/Type /Page", b"/Type /Pages");
+        let count = |mark: &[u8]| pdf.windows(mark.len()).filter(|here| *here == mark).count();
+        count(page) - count(pages)
+    }
+
     fn ask(&mut self, method: &str, params: &Value) -> Value {
         self.asked += 1;
         let mut question = json!({"id": self.asked, "method": method, "params": params});

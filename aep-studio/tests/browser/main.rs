@@ -23,7 +23,7 @@ fn main() {
     if browser.is_none() {
         println!("SKIPPED: no Chromium (apt-get install chromium, or AEP_CHROMIUM=/path/to/it)");
     }
-    let tests: [(&str, Test); 8] = [
+    let tests: [(&str, Test); 10] = [
         ("the_page_opens_from_disk_without_an_error_and_draws", opens),
         ("the_slider_moves_every_picture", slides),
         ("a_drag_zooms_all_plots_over_time_and_a_key_shows_all_again", zooms),
@@ -31,6 +31,8 @@ fn main() {
         ("what_is_shown_is_downloaded_as_csv_and_svg", downloads),
         ("without_scripts_the_drawings_stand", still),
         ("on_a_telephone_nothing_sticks_out", narrow),
+        ("a_part_of_the_residual_is_looked_at_alone", alone),
+        ("on_paper_all_is_unfolded_and_in_the_colours_of_paper", prints),
         ("times_of_drawing", times),
     ];
     let mut trials: Vec<Trial> = Vec::new();
@@ -52,10 +54,11 @@ fn main() {
         trials.push(Trial::test(name, run).with_ignored_flag(skipped));
     }
     let skipped = browser.is_none();
+    let of_script = browser.clone();
     trials.push(
         Trial::test("no_text_of_a_file_becomes_a_script", move || {
             let folder = tempfile::tempdir().unwrap();
-            let mut tab = Tab::new(browser.as_deref().unwrap_or_default(), WIDE);
+            let mut tab = Tab::new(of_script.as_deref().unwrap_or_default(), WIDE);
             tab.open(&page::made(folder.path(), 20_000, page::EVIL));
             reveal(&mut tab);
             assert_eq!(
@@ -67,6 +70,18 @@ fn main() {
         })
         .with_ignored_flag(skipped),
     );
+    let tests: [(&str, fn(&mut Tab)); 2] =
+        [("every_axis_of_a_page_has_its_pictures", axes), ("a_page_of_tables_and_plots", plain)];
+    for (name, test) in tests {
+        let browser = browser.clone();
+        let run = move || {
+            let mut tab = Tab::new(browser.as_deref().unwrap_or_default(), WIDE);
+            test(&mut tab);
+            assert!(tab.errors.is_empty(), "{:?}", tab.errors);
+            Ok(())
+        };
+        trials.push(Trial::test(name, run).with_ignored_flag(skipped));
+    }
     libtest_mimic::run(&arguments, trials).exit();
 }
 
@@ -257,16 +272,128 @@ fn still(tab: &mut Tab, page: &Path) {
     assert_eq!((count(tab, ".live"), count(tab, "canvas")), (0, 0));
 }
 
+/// Words that are broken where nothing allows it, with the element that they stand in.
+const BROKEN: &str = r"(() => { const found = []; const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (texts.nextNode()) { const { data, parentElement: e } = texts.currentNode;
+      if (!e.getClientRects().length || e.closest('script, style, svg, .still, option, code')) continue;
+      for (const word of data.matchAll(/[\p{L}\p{N}_]{2,}/gu)) { const range = document.createRange();
+        range.setStart(texts.currentNode, word.index); range.setEnd(texts.currentNode, word.index + word[0].length);
+        if (new Set([...range.getClientRects()].filter((r) => r.width).map((r) => Math.round(r.top))).size > 1) found.push(`${word[0]} in ${e.tagName}.${e.className}`); } }
+    return found.slice(0, 5); })()";
+
 fn narrow(tab: &mut Tab, page: &Path) {
     tab.size(390, 844);
     tab.open(page);
     reveal(tab);
+    assert_eq!(tab.eval(BROKEN), json!([]));
     let outside = tab.eval(
         "[...document.querySelectorAll('body *')].filter((e) => e.getBoundingClientRect().right > 391 && !e.closest('.scroll')) \
          .map((e) => `${e.tagName}.${e.className} ${e.textContent.slice(0, 40)}`).slice(0, 5)",
     );
     assert_eq!(
         (tab.eval("document.documentElement.scrollWidth"), outside),
+        (json!(390), json!([]))
+    );
+}
+
+fn alone(tab: &mut Tab, page: &Path) {
+    tab.open(page);
+    tab.eval("document.querySelectorAll('.rung')[0].click()");
+    let all = pictures(tab);
+    let said = |tab: &mut Tab| text(tab, "[data-show=region]");
+    let hidden = "document.querySelector('[data-show=region]').hidden";
+    assert_eq!(tab.eval(hidden), json!(true));
+    // A regime: its share is told before and after, and every picture of the residual is another one.
+    let chip = "document.querySelector('.key button')";
+    let share = tab.eval(&format!("{chip}.querySelector('small').textContent"));
+    let name = tab.eval(&format!("{chip}.childNodes[1].textContent"));
+    tab.eval(&format!("{chip}.click()"));
+    let told = said(tab);
+    let share = format!("{} of the squared residual", share.as_str().unwrap());
+    assert!(told.starts_with(name.as_str().unwrap()) && told.contains(&share), "{told}");
+    let regime = pictures(tab);
+    assert!(regime[0] == all[0] && (1..4).all(|k| regime[k] != all[k]));
+    tab.eval(&format!("{chip}.click()"));
+    assert_eq!((tab.eval(hidden), pictures(tab)), (json!(true), all.clone()));
+    // A click on the plot: the stretch of that regime, near; a double click shows all again.
+    let ((x, y), width) = place(tab, "[data-show=residual] .u-over");
+    let at = (x + 0.21 * width, y);
+    let click = |tab: &mut Tab, count: u32| {
+        for kind in ["mousePressed", "mouseReleased"] {
+            tab.mouse(kind, at, json!({"clickCount": count}));
+        }
+    };
+    tab.mouse("mouseMoved", at, json!({}));
+    click(tab, 1);
+    let stretch = said(tab);
+    assert!(stretch.contains(" to ") && stretch.contains(" s "), "{stretch}");
+    assert_ne!(pictures(tab)[0], all[0], "it is not shown nearer");
+    click(tab, 2);
+    tab.mouse("mouseMoved", (1.0, 1.0), json!({}));
+    assert_eq!((tab.eval(hidden), pictures(tab)), (json!(true), all.clone()));
+    // A worst moment, and cells of the map.
+    tab.eval("document.querySelector('.moments button').click()");
+    assert!(said(tab).contains("% of the squared residual"));
+    tab.eval("[...document.querySelectorAll('[data-show=region] button')].at(-1).click()");
+    let ((x, y), _) = place(tab, "[data-show=map] canvas");
+    for (dx, dy) in [(0.0, 0.0), (-20.0, 10.0), (30.0, -12.0), (-60.0, 0.0)] {
+        for kind in ["mouseMoved", "mousePressed", "mouseReleased"] {
+            tab.mouse(kind, (x + dx, y + dy), json!({}));
+        }
+    }
+    assert!(said(tab).starts_with("position ") && said(tab).contains("velocity "), "{}", said(tab));
+}
+
+fn prints(tab: &mut Tab, page: &Path) {
+    tab.scheme("dark");
+    tab.open(page);
+    reveal(tab);
+    tab.eval("document.querySelectorAll('details').forEach((d) => (d.open = false))");
+    let folded = "document.querySelectorAll('details:not([open])').length";
+    let card = "getComputedStyle(document.documentElement).getPropertyValue('--card').trim()";
+    let (closed, dark) = (tab.eval(folded), pictures(tab));
+    assert!(closed.as_u64().unwrap() > 0 && tab.eval(card) != json!("#ffffff"));
+    tab.eval("dispatchEvent(new Event('beforeprint'))");
+    assert_eq!((tab.eval(folded), tab.eval(card)), (json!(0), json!("#ffffff")));
+    let paper = pictures(tab);
+    tab.eval("dispatchEvent(new Event('afterprint'))");
+    assert_eq!((tab.eval(folded), pictures(tab)), (closed.clone(), dark));
+    tab.scheme("light");
+    tab.eval("document.querySelector('.models input').dispatchEvent(new Event('input'))");
+    assert_eq!(pictures(tab), paper);
+    // Folded parts are on paper: with nothing in them there are fewer pages.
+    let whole = tab.pages();
+    assert_eq!(tab.eval(folded), closed);
+    tab.eval("document.querySelectorAll('details').forEach((d) => d.remove())");
+    assert!(tab.pages() < whole, "{whole}");
+}
+
+fn axes(tab: &mut Tab) {
+    let folder = tempfile::tempdir().unwrap();
+    tab.visit(&format!("file://{}", page::two_axes(folder.path()).display()));
+    let ready =
+        "[...document.querySelectorAll('section.screen')].map((s) => s.dataset.ready ?? '')";
+    tab.until("document.querySelector('section.screen').dataset.ready === 'yes'");
+    assert_eq!(tab.eval(ready), json!(["yes", ""]), "what is not seen is not drawn yet");
+    let above = "document.querySelector('table').compareDocumentPosition(document.querySelector('section.screen')) & 4";
+    assert_eq!(tab.eval(above), json!(4), "the table comes first");
+    let twice = "(() => { const ids = [...document.querySelectorAll('[id]')].map((e) => e.id); \
+                 const dead = [...document.querySelectorAll('a[href^=\"#\"]')].map((a) => a.hash.slice(1)).filter((id) => !ids.includes(id)); \
+                 return [ids.filter((id, k) => ids.indexOf(id) !== k), dead]; })()";
+    assert_eq!(tab.eval(twice), json!([[], []]));
+    tab.eval("document.querySelector('header a[href=\"#axis-wrist\"]').click()");
+    tab.until("[...document.querySelectorAll('section.screen')].every((s) => s.dataset.ready)");
+}
+
+fn plain(tab: &mut Tab) {
+    let folder = tempfile::tempdir().unwrap();
+    tab.visit(&format!("file://{}", page::plain(folder.path()).display()));
+    reveal(tab);
+    assert!(text(tab, "figure .bar-of-plot").contains("a curve"));
+    tab.size(390, 844);
+    settle(tab);
+    assert_eq!(
+        (tab.eval("document.documentElement.scrollWidth"), tab.eval(BROKEN)),
         (json!(390), json!([]))
     );
 }

@@ -3,9 +3,12 @@
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use aep_studio::{Source, report};
+use aep_studio::Source;
+use aep_studio::report::plain::{self, Figure, Part};
+use aep_studio::report::{self, AxisPage, Explained};
+use aep_studio::words::AxisResult;
 use missing_physics::measurement::check::check;
-use missing_physics::report::{Compared, Law, LawBin, Plot, Samples, Track};
+use missing_physics::report::{Compared, Curve, Law, LawBin, Plot, Samples, Track};
 use missing_physics::{Channel, Discovery, Recording};
 
 /// A text that ends whatever it stands in, were it not escaped.
@@ -25,11 +28,7 @@ pub fn made(folder: &Path, samples: usize, name: &str) -> PathBuf {
         samples: samples_of(samples, &discovery, name),
         ..Source::default()
     };
-    let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 1e-3).collect();
-    let force = time.iter().map(|t| (TAU * t).sin()).collect();
-    let position = time.iter().map(|t| (TAU * t).cos()).collect();
-    let channels = vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
-    let data = check(&Recording::new("run.csv", time, channels).unwrap());
+    let data = check(&recording());
     let mut discovery = discovery;
     if name == EVIL {
         discovery.plots =
@@ -42,6 +41,63 @@ pub fn made(folder: &Path, samples: usize, name: &str) -> PathBuf {
     let path = folder.join(format!("page-{samples}.html"));
     std::fs::write(&path, page).unwrap();
     path
+}
+
+/// Two axes on one page.
+pub fn two_axes(folder: &Path) -> PathBuf {
+    let discovery: Discovery =
+        serde_json::from_str(include_str!("../fixtures/discovery.json")).unwrap();
+    let effects = discovery.ladder.last().map(|rung| rung.effects.clone()).unwrap_or_default();
+    let explained = |name: &String| Explained { name: name.clone(), ..Explained::default() };
+    let source = |name: &str| Source {
+        name: name.to_owned(),
+        samples: samples_of(4000, &discovery, name),
+        effects: effects.iter().map(explained).collect(),
+        ..Source::default()
+    };
+    let (shoulder, wrist) = (source("shoulder"), source("wrist"));
+    let data = check(&recording());
+    let axis = |name: &'static str, source| AxisPage {
+        name,
+        result: AxisResult::Found(&discovery),
+        source,
+        check: &data,
+    };
+    let page = report::axes("arm.csv", &[axis("shoulder", &shoulder), axis("wrist", &wrist)], "");
+    let path = folder.join("axes.html");
+    std::fs::write(&path, page).unwrap();
+    path
+}
+
+/// A page of no discovery.
+pub fn plain(folder: &Path) -> PathBuf {
+    let curve = Curve { label: "a curve".into(), x: vec![0.0, 1.0], y: vec![1.0, 3.0] };
+    let plot = Plot {
+        title: "A plot".into(),
+        x_label: "time / s".into(),
+        y_label: "size".into(),
+        curves: vec![curve],
+    };
+    let part = Part {
+        id: "part".into(),
+        title: "A comparison".into(),
+        notes: vec!["What is to be known of it.".into()],
+        headings: vec!["optimizer".into(), "#expected with restarts".into(), "#median cost".into()],
+        rows: vec![vec!["accelerated-evolutionary".into(), "12345".into(), "1.0e-8".into()]],
+        figures: vec![Figure { plot, bands: Vec::new() }],
+    };
+    let path = folder.join("plain.html");
+    std::fs::write(&path, plain::page("Optimizers compared", "Five trials.", &[part], "aep"))
+        .unwrap();
+    path
+}
+
+fn recording() -> Recording {
+    let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 1e-3).collect();
+    let force = time.iter().map(|t| (TAU * t).sin()).collect();
+    let position = time.iter().map(|t| (TAU * t).cos()).collect();
+    let channels = vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+    Recording::new("run.csv", time, channels).unwrap()
 }
 
 fn samples_of(samples: usize, discovery: &Discovery, name: &str) -> Samples {

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use aep_data::{Axes, Loaded, PLACE};
 use aep_studio::report::AxisPage;
 use aep_studio::words::{self, AXES_HEADINGS, AxisResult, axis_row};
+use friction_ident::family::{Decides, explained};
 use missing_physics::measurement::check::{DataCheck, Severity, check};
 use missing_physics::report::{Combinations, Samples};
 use missing_physics::{Discovery, Thresholds, discover};
@@ -15,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::{Args, confirmed, friction, save_model, save_series};
 use crate::app::{self, Global};
-use crate::args::{axis_path, with_time_left};
+use crate::args::{axis_path, library, with_time_left};
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading, written};
 use crate::progress::Progress;
@@ -46,6 +47,7 @@ struct Searched {
     discovery: Discovery,
     thresholds: Thresholds,
     friction: Combinations,
+    samples: Samples,
     json: Value,
     files: String,
 }
@@ -253,6 +255,8 @@ fn search(args: &Args, axis: &Axis, watch: Watch) -> Result<Searched, Failure> {
         more: Vec::new(),
     };
     let json = report.json()?;
+    let models = steps::ladder(&family, &discovery)?;
+    let samples = args.results.samples(&family, &models, Decides::Prediction);
     let mut files = String::new();
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, &axis_path(path, &axis.name))?;
@@ -260,7 +264,8 @@ fn search(args: &Args, axis: &Axis, watch: Watch) -> Result<Searched, Failure> {
     if let Some(path) = args.series.of_axis(&axis.name) {
         files += &save_series(&path, &family, &discovery)?;
     }
-    Ok(Searched { discovery, thresholds: settings.thresholds, friction, json, files })
+    let thresholds = settings.thresholds;
+    Ok(Searched { discovery, thresholds, friction, samples, json, files })
 }
 
 /// Which columns were taken for which axis.
@@ -348,6 +353,7 @@ fn in_json(axes: &[Axis], watch: Watch) -> Value {
 
 fn page(args: &Args, axes: &[Axis]) -> String {
     let settings = args.run.settings(Vec::new());
+    let library = explained(&library());
     let sources: Vec<aep_studio::Source> = axes
         .iter()
         .map(|axis| {
@@ -355,6 +361,12 @@ fn page(args: &Args, axes: &[Axis]) -> String {
             source.name = format!("{}, axis {}", source.name, axis.name);
             if let Some(Ok(searched)) = axis.found.get() {
                 source.together = searched.friction.clone();
+                source.samples = searched.samples.clone();
+                // All others would stand there once for each axis.
+                let last = searched.discovery.ladder.last();
+                let named = |name: &String| last.is_some_and(|rung| rung.effects.contains(name));
+                source.effects =
+                    library.iter().filter(|effect| named(&effect.name)).cloned().collect();
             }
             if let Ok(settings) = &settings {
                 source.thresholds = settings.thresholds;

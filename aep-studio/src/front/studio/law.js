@@ -1,15 +1,20 @@
 // A law of one's own: typed, drawn at once beside what the model leaves, added.
 
-const GIVEN = new Set(["x", "v", "a", "s", "t", "F", "pi", "PI", "TAU", "E", "e"]);
+const GIVEN = new Set(["x", "v", "a", "s", "t", "F", "pi", "PI", "TAU", "E"]);
 
-// Names of a formula that are neither functions nor given: its parameters.
+// Names of a formula that are neither functions nor given: its parameters. The e of 2e3 is none.
 function namesOf(text) {
   const names = new Set();
-  for (const [, name, after] of text.matchAll(/([A-Za-z_]\w*)\s*(\(?)/g)) if (!after && !GIVEN.has(name)) names.add(name);
+  for (const [, name, after] of text.matchAll(/(?<![\w.])([A-Za-z_]\w*)\s*(\(?)/g)) if (!after && !GIVEN.has(name)) names.add(name);
   return [...names];
 }
 
+// The curve stands beside what the chosen model leaves.
+const typed = { curve: null, beside: null };
+
 function drawLaw(state) {
+  if (typed.beside !== state.chosen) typed.curve?.();
+  typed.beside = state.chosen;
   draw("law", [state.data, state.chosen != null], () => {
     if (state.chosen == null) return [];
     const name = element("input", { value: "my-law", "aria-label": "name", autocomplete: "off" });
@@ -41,19 +46,22 @@ function drawLaw(state) {
     };
     let asked = 0;
     const curve = settled(async () => {
-      if (!text.value.trim()) return;
+      if (!text.value.trim() || page.state.chosen == null) return;
       const mine = ++asked;
       try {
         const got = await send("/api/law", { law: law(), from: page.state.chosen });
         if (mine !== asked) return;
         said.textContent = "";
         const series = [{ label: "the law", colour: "c2", width: 2 }, { label: "what the model leaves (mean)", colour: "c1", dots: true }];
-        chart(host, { title: "The law along the recorded motion", x: { label: got.along, unit: got.unit ?? "" }, y: { label: "force", unit: got.of }, data: [got.at, got.law, got.left], series, height: 220 });
+        const fresh = element("div");
+        host.replaceChildren(fresh);
+        chart(fresh, { title: "The law along the recorded motion", x: { label: got.along, unit: got.unit ?? "" }, y: { label: "force", unit: got.of }, data: [got.at, got.law, got.left], series, height: 220 });
         forgetGone();
       } catch (refusal) {
         if (mine === asked) said.textContent = [refusal.message, refusal.hint].filter(Boolean).join(". ");
       }
     }, 120);
+    typed.curve = curve;
     const body = element(
       "div",
       { oninput: () => { fields(); curve(); } },

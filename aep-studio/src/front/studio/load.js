@@ -42,6 +42,9 @@ function drawLoad(state, wanted) {
   });
 }
 
+// Back to the models, or to the choice of a file.
+const leaveFile = () => button("Not this file", () => send("/api/leave"), { title: "forget it; models stay as they are" });
+
 const ABOUT = {
   time: "one instant for each row",
   force: "or torque, voltage, current: what the drive gives; a formula over columns may stand here",
@@ -61,7 +64,7 @@ async function mapping() {
     seen = await ask("/api/preview");
   } catch (refusal) {
     notice(refusal);
-    part("load").replaceChildren(heading("This file cannot be read"), element("p", {}, `${refusal.message}. ${refusal.hint ?? ""}`), dropZone(), button("Use the example", () => send("/api/example")));
+    part("load").replaceChildren(heading("This file cannot be read"), element("p", {}, `${refusal.message}. ${refusal.hint ?? ""}`), dropZone(), button("Use the example", () => send("/api/example")), " ", leaveFile());
     return;
   }
   const given = seen.mapping;
@@ -85,6 +88,7 @@ async function mapping() {
     hold: hold.value || null,
     interval_s: interval.value === "" ? null : Number(interval.value),
     regressors: given.regressors,
+    topic: given.topic,
   });
   const names = () => effects.value.split(/[,+]/).map((name) => name.trim()).filter(Boolean);
   const said = element("div", { class: "checked", "aria-live": "polite" });
@@ -95,7 +99,7 @@ async function mapping() {
     try {
       const { html } = await send("/api/check", { mapping: read() });
       if (mine !== asked) return;
-      said.innerHTML = html;
+      fill(said, html);
       go.disabled = false;
     } catch (refusal) {
       if (mine !== asked) return;
@@ -111,16 +115,17 @@ async function mapping() {
     element("tr", {}, element("th", { scope: "row" }, column.name), element("td", {}, column.unit ?? ""), ...column.first.map((value) => element("td", { class: "num" }, value == null ? "–" : number(value, 5))), element("td", { class: "num" }, String(column.len))),
   );
   const more = seen.more ? `, and ${seen.more} more columns` : "";
-  part("load").replaceChildren(
+  const fields = element("div", { oninput: settled(check) });
+  fields.append(
     heading(`How is ${seen.file} read?`),
     element("p", { class: "lead" }, seen.layout ? `Recognised as ${seen.layout}. ` : "", "What is left empty is told by the columns' names (shown in grey). The check below follows every change."),
     element("datalist", { id: "columns" }, ...seen.columns.map((column) => option(column.name))),
     table(required),
     element("details", {}, element("summary", {}, "Further quantities, the force between samples, the base model"), table(others), element("div", { class: "fields" }, field("Force between samples", hold), field("Sampling interval, s", interval), field("Base model", effects))),
-    element("p", {}, go),
+    element("p", {}, go, " ", leaveFile()),
     element("details", {}, element("summary", {}, `The first rows of ${seen.columns.length} columns${more}`), element("div", { class: "scroll" }, element("table", {}, element("tbody", {}, ...first)))),
     said,
   );
-  part("load").addEventListener("input", settled(check));
+  part("load").replaceChildren(fields);
   check();
 }

@@ -25,7 +25,7 @@ function bar(times, largest) {
   return track;
 }
 
-function drawModels(state, compared, setCompared) {
+function drawModels(state, compared) {
   const job = state.job;
   draw("models", [state.models.map(({ id, name, times, gain }) => [id, name, times, gain]), state.chosen, compared, job?.times != null && [job.task.from, job.times, job.said]], () => {
     if (!state.models.length) return [];
@@ -39,13 +39,13 @@ function drawModels(state, compared, setCompared) {
         { type: "button", class: "node-name", title: `${model.said}. ${model.effects.join(" + ")}`, "aria-pressed": String(chosen), onclick: () => attempt(() => send("/api/choose", { model: model.id })) },
         model.name,
       );
-      const beside = element("button", { type: "button", class: "with", title: "compare with the chosen model", "aria-label": `compare ${model.name} with the chosen model`, "aria-pressed": String(model.id === compared), onclick: () => setCompared(model.id === compared ? null : model.id) }, "vs");
+      const beside = element("button", { type: "button", class: "with", title: "compare with the chosen model", "aria-label": `compare ${model.name} with the chosen model`, "aria-pressed": String(model.id === compared), onclick: () => compareWith(model.id === compared ? null : model.id) }, "vs");
       const made = element("div", { class: `rung node${chosen ? " chosen" : ""}${path.includes(model) ? " on-path" : ""}`, "data-model": model.id }, choose, bar(model.times, largest), element("span", { class: "value" }, model.times_said ? `${model.times_said} ×` : "–"), element("span", { class: "gain", title: "held-out log-likelihood gained over the model before it, nats" }, model.gain ?? ""), chosen ? element("span", {}) : beside);
       made.style.paddingLeft = `${4 + 14 * depth}px`;
       return made;
     };
     const rows = ordered(state).map(row);
-    if (live) rows.push(element("div", { class: "rung node live-fit" }, element("span", { class: "node-name" }, live.said), bar(live.times, largest), element("span", { class: "value" }, `${live.times < 2 ? live.times.toFixed(2) : live.times.toFixed(1)} ×`), element("span", {}), element("span", {})));
+    if (live) rows.push(element("div", { class: "rung node live-fit" }, element("span", { class: "node-name" }, live.said), bar(live.times, largest), element("span", { class: "value" }, `${live.times_said} ×`), element("span", {}), element("span", {})));
     return [
       element("div", { class: "legend" }, element("h3", {}, "Models"), element("span", {}, element("i", { class: "c1" }), "prediction error"), element("span", {}, element("i", { class: "floor" }), "what the sensors make")),
       element("div", { class: "ladder" }, ...rows),
@@ -60,7 +60,11 @@ function drawParameters(state) {
     const rows = model.parameters.map((parameter) => {
       const value = element("input", { type: "number", step: "any", value: Number(parameter.number.toPrecision(6)), "aria-label": `value of ${parameter.name}, ${parameter.unit ?? "SI"}` });
       const task = (wanted) => send("/api/task", { task: "fix", from: model.id, parameter: parameter.name, value: wanted });
-      const act = parameter.fixed ? button("Free it", () => task(null)) : button("Fix it", () => task(Number(value.value)));
+      const typed = () => {
+        if (Number.isNaN(value.valueAsNumber)) throw new Refusal({ what: `say at which value ${parameter.name} is fixed`, hint: "a number, in SI units" });
+        return value.valueAsNumber;
+      };
+      const act = parameter.fixed ? button("Free it", () => task(null)) : button("Fix it", () => task(typed()));
       return element(
         "tr",
         {},

@@ -63,6 +63,11 @@ let checked = null;
 async function drawData(state) {
   if (!state.models.length || checked === state.data) return;
   checked = state.data;
-  const { html } = await ask("/api/data");
-  if (checked === state.data) part("data").innerHTML = html;
+  try {
+    const { html } = await ask("/api/data");
+    if (checked === state.data) fill(part("data"), html);
+  } catch (refusal) {
+    checked = null;
+    throw refusal;
+  }
 }

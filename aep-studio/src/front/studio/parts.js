@@ -33,6 +33,13 @@ function settled(act, wait = 250) {
   };
 }
 
+// What the studio made as HTML, in which nothing of a file is markup; its drawings become plots.
+function fill(host, html) {
+  host.innerHTML = html ?? "";
+  forgetGone();
+  watchFigures(host);
+}
+
 const heading = (text) => element("h2", {}, text);
 
 // Draws a part anew only where what it shows has changed, so that a field keeps what is typed into it.

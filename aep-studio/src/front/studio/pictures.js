@@ -6,8 +6,9 @@ const TEMPLATE = () => [
   element("div", { class: "steer" }, element("div", { class: "models", "data-show": "models" }), element("div", { class: "choices", "data-show": "choices" })),
   element("div", { "data-show": "fit" }),
   element("div", { "data-show": "residual" }),
+  element("div", { class: "region", "data-show": "region", "aria-live": "polite" }),
   element("div", { class: "moments", "data-show": "moments" }),
-  element("div", { class: "pair" }, element("div", { "data-show": "profile" }), element("div", { "data-show": "map" })),
+  element("div", { class: "pair" }, element("div", { "data-show": "profile" }), element("div", { "data-show": "map" }), element("div", { "data-show": "remains", class: "remains" })),
 ];
 
 // Draws what is chosen; what was zoomed into stays so, and an effect more is seen to take its part of the error away.
@@ -16,7 +17,8 @@ async function drawPictures(state, compared) {
   const key = `${state.data} ${state.chosen} ${compared}`;
   if (pictures.key === key) return;
   pictures.key = key;
-  const raw = await ask(`/api/course?of=${state.chosen}${compared == null ? "" : `&with=${compared}`}`);
+  const asked = `of=${state.chosen}${compared == null ? "" : `&with=${compared}`}`;
+  const raw = await ask(`/api/course?${asked}`);
   // Something else was chosen meanwhile.
   if (pictures.key !== key) return;
   const before = pictures.state;
@@ -35,4 +37,7 @@ async function drawPictures(state, compared) {
     choose(made, made.course.models.length - 2);
     setTimeout(() => fresh.isConnected && choose(made, made.course.models.length - 1), 450);
   }
+  // What takes longer comes after the pictures.
+  const { html } = await ask(`/api/remains?${asked}`);
+  if (fresh.isConnected) fill(fresh.querySelector("[data-show=remains]"), html);
 }

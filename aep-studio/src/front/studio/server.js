@@ -39,7 +39,8 @@ function listen(heard, lost) {
     if (document.hidden || source) return;
     source = new EventSource("/api/events");
     source.onopen = async () => {
-      if (gone) await renew();
+      // It may have gone again meanwhile; then this is tried again.
+      if (gone && (await renew().catch(() => "away")) === "away") return;
       gone = false;
       heard({ changed: true });
     };

@@ -26,17 +26,15 @@ function render() {
   drawActions(state, loading);
   drawStatus(state);
   part("loop").hidden = loading || !state.models.length;
-  drawModels(state, page.compared, (id) => {
-    page.compared = id;
-    render();
-  });
+  drawModels(state, page.compared);
   drawCandidates(state, page.effects);
   drawParameters(state);
   drawLaw(state);
   drawNext(state);
+  drawControl(state);
   drawRiddle(state, page.effects);
   drawFiles(state);
-  for (const name of ["parameters", "law", "next", "riddle", "files", "data"]) {
+  for (const name of ["parameters", "law", "next", "control", "riddle", "files", "data"]) {
     const host = part(name);
     host.hidden = loading || !host.childElementCount;
   }
@@ -45,6 +43,11 @@ function render() {
     pictures.key = null;
     notice(refusal);
   });
+}
+
+function compareWith(id) {
+  page.compared = id;
+  render();
 }
 
 // How the force is read where nobody said it.
@@ -73,9 +76,9 @@ async function undo() {
 // What is being done, what was left by a killed server, what failed.
 function drawStatus(state) {
   const { job, interrupted, failed } = state;
-  draw("status", [job && [job.said, job.message, job.times], interrupted, failed], () => {
+  draw("status", [job && [job.said, job.message, job.times_said], interrupted, failed], () => {
     if (job) {
-      const times = job.times == null ? "" : ` — ${job.effects.join(" + ")}: ${job.times.toFixed(2)} times what the sensors make`;
+      const times = job.times == null ? "" : `: ${job.effects.join(" + ")}: ${job.times_said} times what the sensors make`;
       const message = job.message && job.message !== job.said && job.times == null ? `: ${job.message}` : "";
       return [element("span", { class: "spinner", "aria-hidden": "true" }), element("span", { class: "doing" }, `${job.said}${message}${times}`), button("Cancel", () => send("/api/cancel"))];
     }
@@ -89,7 +92,6 @@ addEventListener("keydown", (event) => {
   if (event.target.matches("input, select, textarea, .chart") || event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "u") attempt(undo);
 });
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", forgetColours);
 
 // Where the studio went away the page says so, and goes on when it is there again.
 const lost = () => {
@@ -106,7 +108,8 @@ listen((message) => {
   if (message.progress && page.state) {
     page.state.job = message.progress;
     drawStatus(page.state);
-    drawModels(page.state, page.compared, () => {});
+    drawModels(page.state, page.compared);
   }
-  if (message.changed) attempt(refresh);
+  // What was refused stays to be read.
+  if (message.changed) refresh().catch(notice);
 }, lost);
