@@ -141,8 +141,12 @@ impl From<ForeignModel> for Failure {
 
 impl From<PreparationError> for Failure {
     fn from(error: PreparationError) -> Self {
-        Self::bad_input(error.to_string()).with_hint(
-            "record a motion that reverses several times and covers slow and fast speeds",
-        )
+        let hint = match error {
+            PreparationError::Slow { .. } => {
+                "say the unit of the time: --time-unit ms, or the interval: --interval S"
+            }
+            _ => "record a motion that reverses several times and covers slow and fast speeds",
+        };
+        Self::bad_input(error.to_string()).with_hint(hint)
     }
 }

@@ -19,10 +19,9 @@ use crate::table::Table;
 const LARGEST: f64 = 1e12;
 /// Smallest range in SI of a channel that changes at all.
 const SMALLEST: f64 = 1e-12;
-/// Shortest and longest sampling interval, s. Friction, gaps and couplings act within milliseconds: of slower samples nothing
-/// of them can be told, and milliseconds that are read as seconds are as long.
+/// Shortest and longest sampling interval, s.
 const SHORTEST: f64 = 1e-8;
-const LONGEST: f64 = 0.2;
+const LONGEST: f64 = 10.0;
 
 /// A recording and how it was read.
 #[derive(Clone, Debug, PartialEq)]

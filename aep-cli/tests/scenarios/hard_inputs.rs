@@ -110,7 +110,7 @@ fn what_says_nothing_of_a_drive_is_refused() {
     for (rows, parts) in [
         (
             each(|_, [t, force, x]| [1e3 * t, force, x]),
-            ["one sample every 1.00e0 s", "--time-unit ms"],
+            ["the samples are 1 s apart", "--time-unit ms"],
         ),
         (each(|_, [t, force, x]| [t, 1e11 * force, x]), ["out of all reason", "--force-unit"]),
         (each(|_, [t, _, x]| [t, 3.0, x]), ["'force' never changes", "hint:"]),

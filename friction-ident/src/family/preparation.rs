@@ -81,6 +81,14 @@ pub enum PreparationError {
         /// Grid points needed.
         needed: usize,
     },
+    /// Samples that are too far apart.
+    #[error(
+        "the samples are {interval} s apart, a drive needs {SLOWEST} s or less: what friction does shows within milliseconds"
+    )]
+    Slow {
+        /// Median interval, s.
+        interval: f64,
+    },
     /// The force or the position is constant.
     #[error("'{channel}' never changes: nothing can be learned from it")]
     Constant {
@@ -89,6 +97,9 @@ pub enum PreparationError {
     },
 }
 
+/// Longest sampling interval, s. Friction, gaps and couplings act within milliseconds; milliseconds that are read as seconds
+/// are longer than this, and each of them would be simulated in a thousand steps.
+const SLOWEST: f64 = 0.2;
 /// Fewest grid points of a comparison.
 const LEAST_POINTS: usize = 60;
 
@@ -142,6 +153,9 @@ impl Prepared {
             }
         }
         let interval = recording.interval();
+        if interval > SLOWEST {
+            return Err(PreparationError::Slow { interval });
+        }
         let mut raw = Raw::default();
         for range in recording.segments() {
             raw.resample(
