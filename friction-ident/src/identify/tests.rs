@@ -1,3 +1,5 @@
+use std::sync::atomic::AtomicBool;
+
 use aep_core::Aep;
 use missing_physics::fit::Until;
 use missing_physics::{Channel, Hold};
