@@ -18,7 +18,10 @@ fn optimizers_are_compared_with_curves_trials_and_a_plot() {
     let page = desk.read("page.html");
     assert!(page.contains("<td class=num>8/8</td>") && page.contains("log10 of cost"));
     // Both curves with their quartiles.
-    assert_eq!((page.matches("<polyline class").count(), page.matches("<polygon class").count()), (2, 2));
+    assert_eq!(
+        (page.matches("<polyline class").count(), page.matches("<polygon class").count()),
+        (2, 2)
+    );
 }
 
 #[test]

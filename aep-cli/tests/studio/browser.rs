@@ -244,10 +244,7 @@ fn simulated(chromium: &str) {
         "(() => { const i = document.querySelector('[data-part=law] [aria-label=law]'); i.value = '2e-3*v'; i.dispatchEvent(new Event('input', {bubbles: true})); })()",
     );
     tab.until("Boolean(document.querySelector('[data-part=law] .canvas canvas'))");
-    assert_eq!(
-        tab.eval("document.querySelectorAll('[data-part=law] tbody tr').length"),
-        json!(0)
-    );
+    assert_eq!(tab.eval("document.querySelectorAll('[data-part=law] tbody tr').length"), json!(0));
     tab.eval("document.querySelector('[data-part=law] .canvas').dataset.old = 'yes'");
     server.task(&json!({"task": "add", "from": 0, "effect": "stribeck"}));
     tab.until("!document.querySelector('[data-part=law] .canvas')?.dataset.old");
