@@ -49,12 +49,15 @@ pub fn remains(studio: &Arc<Studio>, asked: &Pictured) -> Result<Value, Failure>
     Ok(json!({ "html": html.unwrap_or_default() }))
 }
 
-/// Each with its name and errors.
+/// A model's name and errors.
+type Named = (String, Rung);
+
+/// All that are drawn.
 fn models(
     studio: &Studio,
     session: &Session,
     asked: &Pictured,
-) -> Result<(Vec<(String, Rung)>, Vec<Fitted>), Failure> {
+) -> Result<(Vec<Named>, Vec<Fitted>), Failure> {
     let Some(with) = asked.with else {
         let (_, models) = export::path(studio, session, asked.of)?;
         let project = studio.project();

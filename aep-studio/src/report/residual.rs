@@ -22,7 +22,7 @@ pub(super) fn section(discovery: &Discovery) -> String {
     let Some(diagnosis) = &discovery.diagnosis else { return String::new() };
     let base = discovery.diagnosis_base.as_ref().and_then(|base| base.whiteness.as_ref());
     let resembles = diagnosis.whiteness.as_ref().and_then(|last| autocorrelation(base, last));
-    let drawn = concat(resembles.into_iter()) + &maps(discovery, diagnosis);
+    let drawn = resembles.unwrap_or_default() + &maps(discovery, diagnosis);
     let drawn = if drawn.is_empty() { drawn } else { format!("<div class=figures>{drawn}</div>") };
     let body = tests(diagnosis) + &lines(discovery, diagnosis) + &drawn;
     if body.is_empty() {

@@ -15,6 +15,9 @@ use serde_json::{Value, json};
 /// A test of a page in a tab.
 type Test = fn(&mut Tab, &Path);
 
+/// A test that makes its page.
+type OwnPage = fn(&mut Tab);
+
 const WIDE: (u32, u32) = (1280, 900);
 
 fn main() {
@@ -70,7 +73,7 @@ fn main() {
         })
         .with_ignored_flag(skipped),
     );
-    let tests: [(&str, fn(&mut Tab)); 2] =
+    let tests: [(&str, OwnPage); 2] =
         [("every_axis_of_a_page_has_its_pictures", axes), ("a_page_of_tables_and_plots", plain)];
     for (name, test) in tests {
         let browser = browser.clone();
