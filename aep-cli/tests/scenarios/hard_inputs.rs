@@ -106,7 +106,7 @@ fn what_limits_a_recording_is_told() {
 #[test]
 fn what_says_nothing_of_a_drive_is_refused() {
     let desk = Desk::new();
-    let half = |k: usize, force: f64| if k % 2 == 0 { f64::NAN } else { force };
+    let half = |k: usize, force: f64| if k.is_multiple_of(2) { f64::NAN } else { force };
     for (rows, parts) in [
         (
             each(|_, [t, force, x]| [1e3 * t, force, x]),
