@@ -120,7 +120,10 @@ impl Campaign {
         match self.answers.recv_timeout(self.limits.time) {
             Ok((Err(place), _)) => Err(Cause::Panic(place)),
             Ok((Ok(_), needed))
-                if needed > self.limits.memory + self.limits.times * input.len() =>
+                if needed
+                    > self.limits.memory
+                        + self.target.reserves
+                        + self.limits.times * input.len() =>
             {
                 Err(Cause::Memory)
             }

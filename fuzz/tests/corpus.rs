@@ -34,10 +34,10 @@ fn what_none_may_do_is_a_finding() {
     use fuzz::{Cause, Target};
     use std::time::Duration;
 
-    static TARGET: Target = Target {
-        name: "test",
-        seeds: || vec![b"abc".to_vec()],
-        run: |input| match input {
+    static TARGET: Target = Target::new(
+        "test",
+        || vec![b"abc".to_vec()],
+        |input| match input {
             b"panic" => panic!("as asked"),
             b"hang" => loop {
                 std::thread::sleep(Duration::from_secs(1));
@@ -45,7 +45,7 @@ fn what_none_may_do_is_a_finding() {
             b"memory" => vec![1u8; 64 << 20].len().to_string(),
             _ => String::new(),
         },
-    };
+    );
     let limits = Limits { time: Duration::from_millis(500), memory: 1 << 20, times: 1 };
     let campaign = Campaign::new(&TARGET, limits);
     assert_eq!(campaign.tried(b"abc"), Ok(String::new()));

@@ -6,7 +6,7 @@ use crate::ahead;
 use crate::family::ModelFamily;
 use crate::fit;
 use crate::report::{Candidate, Discovery};
-use crate::task::{DiscoverError, Event, Observer, Settings, terms};
+use crate::task::{DiscoverError, Event, Observer, Settings, terms, terms_of_model};
 
 /// Fits the base model, then searches the set of effects that it lacks, by errors one sample ahead.
 ///
@@ -17,7 +17,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     settings: &Settings<'_>,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {
-    let base = terms(family, &settings.base)?;
+    let base = terms_of_model(family, &settings.base)?;
     let excluded = terms(family, &settings.exclude)?;
     if let Some(reading) = ahead::Reading::of(family) {
         let sets = (base.as_slice(), excluded.as_slice());

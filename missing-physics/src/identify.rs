@@ -6,7 +6,7 @@ use crate::diagnosis::{comparison, fitted_blocks, rung};
 use crate::family::ModelFamily;
 use crate::fit::{Fit, Found, Until, identify_by};
 use crate::report::Discovery;
-use crate::task::{DiscoverError, terms};
+use crate::task::{DiscoverError, terms_of_model};
 
 /// Identifies a model of the terms called `names` and those of every model, on the fitted blocks; once `until` is over the
 /// best of the search so far is refined.
@@ -19,7 +19,7 @@ pub fn identify<F: ModelFamily + ?Sized>(
     method: (&dyn Method<f64>, u64),
     until: Until<'_>,
 ) -> Result<Found, DiscoverError> {
-    let terms = terms(family, names)?;
+    let terms = terms_of_model(family, names)?;
     Ok(identify_by(family, &terms, &fitted_blocks(family), method, until))
 }
 

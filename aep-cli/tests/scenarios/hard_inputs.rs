@@ -80,7 +80,7 @@ fn what_limits_a_recording_is_told() {
         ("position turned", each(|_, [t, force, x]| [t, force, -x]), "negative_work"),
         ("mm read as m", each(|_, [t, force, x]| [t, force, 1e3 * x]), "fast"),
         ("one direction", one_way, "one_direction"),
-        ("two changes of direction", rows()[..900].to_vec(), "few_reversals"),
+        ("two changes of direction", rows()[..600].to_vec(), "few_reversals"),
         (
             "a quarter is missing",
             rows()

@@ -6,16 +6,13 @@ use aep_core::{Budget, Domain, Driver, FnProblem, Method, Problem, Start, method
 
 use super::{Target, outline};
 
-pub const CHECKPOINT: Target = Target {
-    name: "checkpoint",
-    seeds: || METHODS.iter().map(|name| saved(name)).collect(),
-    run: resumed,
-};
-pub const STATE: Target = Target {
-    name: "state",
-    seeds: || METHODS.iter().map(|name| saved(name)).collect(),
-    run: |input| resumed(&with_checksum(input)),
-};
+pub const CHECKPOINT: Target =
+    Target::new("checkpoint", || METHODS.iter().map(|name| saved(name)).collect(), resumed);
+pub const STATE: Target = Target::new(
+    "state",
+    || METHODS.iter().map(|name| saved(name)).collect(),
+    |input| resumed(&with_checksum(input)),
+);
 
 const METHODS: [&str; 4] = ["aep-practical", "aep-practical-restarts", "de", "cma-es"];
 /// Where the length of the content stands, and where the content begins.

@@ -10,13 +10,11 @@ use missing_physics::Hold;
 use super::{Target, outline};
 
 pub const MAPPING: Target =
-    Target { name: "mapping", seeds: || texts(&MAPPINGS), run: |input| text(input, mapping) };
+    Target::new("mapping", || texts(&MAPPINGS), |input| text(input, mapping));
 pub const FORMULA: Target =
-    Target { name: "formula", seeds: || texts(&FORMULAS), run: |input| text(input, formula) };
-pub const EFFECT: Target =
-    Target { name: "effect", seeds: || texts(&EFFECTS), run: |input| text(input, effect) };
-pub const MODEL: Target =
-    Target { name: "model", seeds: || texts(&MODELS), run: |input| text(input, model) };
+    Target::new("formula", || texts(&FORMULAS), |input| text(input, formula));
+pub const EFFECT: Target = Target::new("effect", || texts(&EFFECTS), |input| text(input, effect));
+pub const MODEL: Target = Target::new("model", || texts(&MODELS), |input| text(input, model));
 
 const MAPPINGS: [&str; 2] = [
     "hold = \"zero-order\"\ninterval_s = 0.001\n[force]\ncolumn = \"u\"\nunit = \"V\"\ngain = 35.15\n\

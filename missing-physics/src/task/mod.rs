@@ -6,6 +6,6 @@ mod settings;
 mod thresholds;
 
 pub use event::{Event, Observer};
-pub use names::{DiscoverError, model_of, terms};
+pub use names::{DiscoverError, model_of, terms, terms_of_model};
 pub use settings::Settings;
 pub use thresholds::Thresholds;

@@ -17,7 +17,7 @@ pub enum DiscoverError {
     },
     /// Two forms of one effect, where a model has one.
     #[error(
-        "'{first}' and '{second}' are two forms of one effect\na model has one of them: leave one out"
+        "'{first}' and '{second}' are two forms of one effect, of which a model has one: leave one out"
     )]
     TwoForms {
         /// The one that was named first.
@@ -30,7 +30,7 @@ pub enum DiscoverError {
 /// The indices of terms by name, those of every model first.
 ///
 /// # Errors
-/// [`DiscoverError::UnknownTerm`] for a name that the family does not have, [`DiscoverError::TwoForms`] for two of one effect.
+/// [`DiscoverError::UnknownTerm`] for a name that the family does not have.
 pub fn terms<F: ModelFamily + ?Sized>(
     family: &F,
     names: &[String],
@@ -43,17 +43,30 @@ pub fn terms<F: ModelFamily + ?Sized>(
                 all.iter().filter(|t| !t.always).map(|t| t.name.as_str()).collect();
             DiscoverError::UnknownTerm { name: name.clone(), known: known.join(", ") }
         })?;
-        if indices.contains(&index) {
-            continue;
+        if !indices.contains(&index) {
+            indices.push(index);
         }
-        let main = |term: usize| family.form_of(term).unwrap_or(term);
-        if let Some(other) = indices.iter().find(|other| main(**other) == main(index)) {
-            let (first, second) = (all[*other].name.clone(), name.clone());
-            return Err(DiscoverError::TwoForms { first, second });
-        }
-        indices.push(index);
     }
     Ok(indices)
+}
+
+/// The same for one model.
+///
+/// # Errors
+/// [`DiscoverError::UnknownTerm`] for a name that the family does not have, [`DiscoverError::TwoForms`] for two forms of an effect.
+pub fn terms_of_model<F: ModelFamily + ?Sized>(
+    family: &F,
+    names: &[String],
+) -> Result<Vec<usize>, DiscoverError> {
+    let terms = terms(family, names)?;
+    let main = |term: usize| family.form_of(term).unwrap_or(term);
+    for (k, term) in terms.iter().enumerate() {
+        if let Some(other) = terms[..k].iter().find(|other| main(**other) == main(*term)) {
+            let name = |term: usize| family.terms()[term].name.clone();
+            return Err(DiscoverError::TwoForms { first: name(*other), second: name(*term) });
+        }
+    }
+    Ok(terms)
 }
 
 /// The model of a rung as it was found.
