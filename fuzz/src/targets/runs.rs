@@ -53,7 +53,8 @@ fn gone_on(name: &str, path: &Path) -> String {
     let mut driver = Driver::new(Budget::evaluations(120));
     match driver.resume(&mut *algorithm, &problem, path) {
         Ok(outcome) => outcome.stop.to_string(),
-        Err(error) => outline(error.to_string().lines().next().unwrap_or_default()),
+        // The folder is another one each time.
+        Err(error) => outline(&error.to_string().replace(&format!("{}: ", path.display()), "")),
     }
 }
 
