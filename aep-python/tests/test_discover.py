@@ -103,11 +103,18 @@ def test_ctrl_c_ends_the_search_with_what_was_found_and_other_threads_go_on(colu
 
     thread = threading.Thread(target=beat)
     thread.start()
-    timer = threading.Timer(0.6, lambda: signal.raise_signal(signal.SIGINT))
-    timer.start()
+    timer = threading.Timer(0.1, lambda: signal.raise_signal(signal.SIGINT))
+
+    def begun(happening):
+        # However fast the machine is, there is something to tell by then and the search is not over.
+        if happening["stage"] == "screening" and timer.ident is None:
+            timer.start()
+
     try:
         with pytest.raises(aep.Interrupted) as raised:
-            aep.discover(columns, hold="sampled", thresholds={"beam": 20, "fitted": 40}, time_limit=None)
+            aep.discover(
+                columns, hold="sampled", thresholds={"beam": 20, "fitted": 40}, time_limit=None, progress=begun
+            )
     finally:
         timer.cancel()
         ended.set()
