@@ -15,6 +15,7 @@ use crate::compensation::{self, Case};
 use crate::curve_plot::{self, Axes, Curve};
 use crate::failure::Failure;
 use crate::output::{self, Table, heading, written};
+use crate::outputs;
 use crate::report::command;
 
 /// Simulate PD control with and without friction compensation
@@ -66,6 +67,16 @@ References: ramp:SPEED  sine:AMPLITUDE,FREQUENCY  trapezoid:DISTANCE,SPEED,ACCEL
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
+    let read: Vec<PathBuf> = args.model.iter().chain(&args.plant).cloned().collect();
+    outputs::check(
+        &read,
+        &[
+            ("--output", args.output.as_deref()),
+            ("--plot", args.plot.as_deref()),
+            ("--json", args.json.as_deref()),
+            ("--html", args.html.as_deref()),
+        ],
+    )?;
     let case = case(args)?;
     let both = case.run()?;
     let (pd, with) = (&both.pd, &both.with);

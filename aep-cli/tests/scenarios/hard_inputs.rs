@@ -145,6 +145,7 @@ fn what_is_asked_in_two_ways_or_of_nothing_is_refused() {
         "simulate --model m.json --input run.csv -o run.csv",
         "export --model m.json --to mjcf -o m.json",
         "suggest run.csv --model m.json --json m.json",
+        "control --model m.json --reference sine:5mm,0.5Hz -o m.json",
     ] {
         desk.aep(line).refused(&["would write over a file that is read", "another name"]);
     }
