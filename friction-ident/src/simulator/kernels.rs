@@ -2,6 +2,9 @@
 
 use crate::simd::{sign, vectorised};
 
+/// Share of a displacement by which an iteration moves it that no later one mends: a few times the rounding.
+const SETTLED: f64 = 1e-14;
+
 /// Cuts off at 0, unlike `max` without hiding a NaN.
 #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
@@ -173,6 +176,8 @@ vectorised! {
         }
     }
 
+    /// A step of Newton in the lanes that are open still; a lane that moves no more stays as it is, so that it ends the
+    /// same beside whatever others.
     pub(super) fn newton(
         left: &[f64],
         inertia: &[f64],
@@ -181,17 +186,27 @@ vectorised! {
         stiffness: &[f64],
         mean: &mut [f64],
         displacement: &mut [f64],
+        open: &mut [f64],
+        any_open: &mut bool,
     ) {
         let n = left.len();
         let (inertia, push, elements) = (&inertia[..n], &push[..n], &elements[..n]);
         let (stiffness, mean) = (&stiffness[..n], &mut mean[..n]);
-        let displacement = &mut displacement[..n];
+        let (displacement, open) = (&mut displacement[..n], &mut open[..n]);
+        let mut count = 0u64;
         for i in 0..n {
-            let r = left[i];
-            let linear = elements[i] - stiffness[i] * displacement[i];
-            mean[i] = (push[i] - r * linear) / (inertia[i] + r * r * stiffness[i]);
-            displacement[i] = r * mean[i];
+            let (r, before) = (left[i], displacement[i]);
+            let linear = elements[i] - stiffness[i] * before;
+            let next = (push[i] - r * linear) / (inertia[i] + r * r * stiffness[i]);
+            let moved = r * next;
+            let goes_on = open[i] > 0.0;
+            mean[i] = if goes_on { next } else { mean[i] };
+            displacement[i] = if goes_on { moved } else { before };
+            let settled = (moved - before).abs() <= SETTLED * moved.abs();
+            open[i] = if settled { 0.0 } else { open[i] };
+            count += u64::from(open[i] > 0.0);
         }
+        *any_open = count > 0;
     }
 
     pub(super) fn close_elastic(

@@ -41,6 +41,8 @@ pub(super) struct Scratch {
     pub mean: Vec<f64>,
     /// Displacement in the piece.
     pub displacement: Vec<f64>,
+    /// Whether it is still looked for: 1 or 0.
+    pub open: Vec<f64>,
     /// Length of the piece that is taken.
     pub taken: Vec<f64>,
     /// Always 0: the level that an attached body sees, the velocity of a level at rest.
@@ -72,6 +74,7 @@ impl Scratch {
             push: lane(),
             mean: lane(),
             displacement: lane(),
+            open: lane(),
             taken: lane(),
             zero: lane(),
         }

@@ -109,8 +109,10 @@ impl Plants {
 
     fn rigid_piece(&mut self) {
         self.predict();
-        self.scratch.displacement.fill(0.0);
-        if !self.attached.is_empty() {
+        let attached = !self.attached.is_empty();
+        // Only where a lane stands it matters what its elements do while it does not move.
+        if attached && self.velocity.contains(&0.0) {
+            self.scratch.displacement.fill(0.0);
             self.respond_elements();
         }
         let s = &mut self.scratch;
@@ -130,16 +132,16 @@ impl Plants {
             &mut s.taken,
         );
         // A lane that rests takes its elements through the time of its rest.
-        let rests = !self.attached.is_empty();
-        if rests {
+        if attached && s.taken.iter().any(|taken| *taken > 0.0) {
+            s.displacement.fill(0.0);
             self.commit_elements();
         }
         self.balance();
-        if self.attached.is_empty() {
+        if attached {
+            self.newton();
+        } else {
             let s = &mut self.scratch;
             divide(&s.push, &s.inertia, &mut s.mean);
-        } else {
-            self.newton();
         }
         let s = &mut self.scratch;
         close_rigid(
@@ -156,7 +158,7 @@ impl Plants {
             &mut self.sliding,
             &mut self.time,
         );
-        if rests {
+        if attached {
             self.commit_elements();
         }
         if !self.memories.is_empty() {
@@ -185,7 +187,12 @@ impl Plants {
     /// Mean velocity with the elements, by Newton from no displacement.
     fn newton(&mut self) {
         self.scratch.displacement.fill(0.0);
+        self.scratch.open.fill(1.0);
+        let mut any_open = true;
         for _ in 0..=self.iterations {
+            if !any_open {
+                break;
+            }
             self.respond_elements();
             let s = &mut self.scratch;
             newton(
@@ -196,6 +203,8 @@ impl Plants {
                 &s.stiffness,
                 &mut s.mean,
                 &mut s.displacement,
+                &mut s.open,
+                &mut any_open,
             );
         }
     }

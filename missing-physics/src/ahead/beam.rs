@@ -49,6 +49,8 @@ pub struct Climb {
     /// Sets of effects by their number, the best first.
     nodes: Vec<Vec<Node>>,
     ranking: Vec<Ranked>,
+    /// What the candidates promise beside the best set of each size.
+    screened: Vec<(Node, Screened)>,
     /// Sets that predict better than what they were grown from, but are not what they are called, and why.
     refused: Vec<(Node, Refusal)>,
     /// Those of the last size that are extended.
@@ -147,6 +149,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let mut climb = Climb {
             nodes: vec![vec![base.clone()]],
             ranking: Vec::new(),
+            screened: Vec::new(),
             refused: Vec::new(),
             beam: vec![base.clone()],
             base,
@@ -183,7 +186,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 let unasked = (self.stop)() && !costs.is_empty() && !self.ahead.rivals().is_empty();
                 rival = unasked.then_some(Remains::RivalsUnasked);
             }
-            let mut beside = self.beside(&last);
+            let mut beside = self.beside(&climb, &last);
             if beside.promises.is_empty() {
                 // Nothing else is open: what was gained by chance where the last one was added.
                 let before = costs.len().checked_sub(1).and_then(|k| climb.ranking.get(k));
@@ -233,8 +236,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         nats / self.ahead.share()
     }
 
-    /// The candidates beside a model, with what they would gain by chance.
-    fn beside(&self, node: &Node) -> Screened {
+    /// The candidates beside a model, with what they would gain by chance; as they were screened where the search went
+    /// on from one that is as good.
+    fn beside(&self, climb: &Climb, node: &Node) -> Screened {
+        let as_good = |other: &Node| {
+            let same = (&other.model.terms, other.setting) == (&node.model.terms, node.setting);
+            same && self.comparison.compare(other, node).nats.abs() < FORM
+        };
+        if let Some((_, known)) = climb.screened.iter().find(|(other, _)| as_good(other)) {
+            return known.clone();
+        }
         let open = self.candidates.iter().copied();
         let open: Vec<usize> = open.filter(|&t| self.family.joins(&node.model, t)).collect();
         screen(self.family, self.ahead, node, &open, true)

@@ -95,6 +95,8 @@ pub struct Plant {
     pub related: Option<(usize, usize)>,
     /// Frequencies beside that of a tone, rad/s.
     pub leaps: Vec<f64>,
+    /// What stands for a few pieces of the recording.
+    pub part: Option<Box<Plant>>,
     /// The force that every model lacks.
     pub lacks: Option<Series>,
 }
@@ -180,6 +182,7 @@ impl Plant {
             forms: vec![(BENT, WAVE)],
             related: None,
             leaps: Vec::new(),
+            part: None,
             lacks: None,
         }
     }
@@ -268,6 +271,9 @@ impl Ahead for Plant {
             model.without(self, term).with(other, &[size])
         };
         related.map(swapped).into_iter().collect()
+    }
+    fn part(&self) -> Option<Box<dyn Ahead + '_>> {
+        self.part.as_ref().map(|part| Box::new(Borrowed(part)) as Box<dyn Ahead>)
     }
     fn variations(&self, model: &Fitted) -> Vec<Fitted> {
         let Some(place) = model.terms.iter().position(|term| *term == TONE) else {

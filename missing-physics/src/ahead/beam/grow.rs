@@ -16,8 +16,9 @@ use crate::task::Event;
 
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
 const NEAR: f64 = 1.25;
-/// Promise below which a candidate is not fitted beside the base, nats.
-const PROMISING: f64 = 2.0;
+/// Share of what an effect must gain that a candidate must promise to be fitted beside the base: there the first order
+/// errs most.
+const PROMISING: f64 = 0.15;
 /// A search ends where chance gains as much as the best candidate this often: two effects may hide each other, but not
 /// so well.
 const HOPELESS: f64 = 0.5;
@@ -46,6 +47,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 front = Some(best.unwrap_or(from).clone());
                 let gains = children.iter().map(|child| self.comparison.compare(from, child));
                 least = gains.map(|gain| self.p_value(&screened, gain)).reduce(f64::min);
+                if !screened.promises.is_empty() {
+                    climb.screened.push((from.clone(), screened.clone()));
+                }
                 climb.ranking.push(self.ranked(from, &children, screened));
             }
             for child in children {
@@ -129,7 +133,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         // The first order seldom promises less than half of what a fit gains.
         let least = if size == 1 {
-            PROMISING
+            PROMISING * self.thresholds.better
         } else {
             0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
         };
@@ -177,7 +181,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .collect();
         let related: Vec<Node> = related
             .into_par_iter()
-            .map(|(start, setting)| self.refit(&start, setting, STEPS.2))
+            .map(|(start, setting)| self.gone_far(&start, setting))
             .collect();
         settled.extend(related);
         settled.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));

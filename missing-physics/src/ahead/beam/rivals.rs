@@ -65,7 +65,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if (self.stop)() {
             return None;
         }
-        let free = self.leapt(self.refit(&start, base.setting, STEPS.2));
+        let free = self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2));
         // Of more effects, and beside some that leave something, some may be needed beside it.
         let all = added.is_empty() || (added.len() <= 2 && self.is_complete(last));
         if all && !self.does_as_much(last, &free, added.len(), rival) {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{FORM, LOWER, RESCANS, STEPS, Search, TRIED, negative};
+use crate::ahead::Ahead;
 use crate::ahead::compare::Difference;
 use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
@@ -33,25 +34,40 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// The node at the bottom of its valley, or of a lower one beside it.
     pub(super) fn rescanned(&self, node: &Node) -> Node {
-        self.leapt(self.refit(&node.model, node.setting, STEPS.2))
+        if self.ahead.variations(&node.model).is_empty() {
+            return self.refit(&node.model, node.setting, STEPS.2);
+        }
+        let found = self.gone_far(&node.model, node.setting);
+        if found.deviation < node.deviation { found } else { node.clone() }
     }
 
-    /// A fitted node, or the lowest valley that is reached by leaps from it.
-    pub(super) fn leapt(&self, mut node: Node) -> Node {
+    /// A fit that has far to go: most of the way on a part, where there is one.
+    pub(super) fn gone_far(&self, start: &Fitted, setting: usize) -> Node {
+        let on = |ahead: &dyn Ahead| {
+            let fitter = Fitter::new(self.family, ahead).stopped_by(self.stop);
+            self.leapt(ahead, fitter.refit(start.clone(), setting, STEPS.2))
+        };
+        let Some(part) = self.ahead.part() else { return on(self.ahead) };
+        let there = on(&*part);
+        self.refit(&there.model, there.setting, STEPS.1)
+    }
+
+    /// A node that was fitted to some errors, or the lowest valley that is reached by leaps from it.
+    pub(super) fn leapt(&self, ahead: &dyn Ahead, mut node: Node) -> Node {
+        let fitter = Fitter::new(self.family, ahead).stopped_by(self.stop);
         for _ in 0..RESCANS {
-            let beside = self.ahead.variations(&node.model);
+            let beside = ahead.variations(&node.model);
             if beside.is_empty() || (self.stop)() {
                 break;
             }
             let trials: Vec<(Fitted, usize)> =
                 beside.into_iter().map(|model| (model, node.setting)).collect();
-            let errors = self.ahead.errors(&trials);
-            let nodes =
-                trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(self.ahead, m, s, e));
+            let errors = ahead.errors(&trials);
+            let nodes = trials.into_iter().zip(errors).map(|((m, s), e)| Node::new(ahead, m, s, e));
             let Some(best) = nodes.min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
                 break;
             };
-            let fitted = self.refit(&best.model, node.setting, STEPS.1);
+            let fitted = fitter.refit(best.model, node.setting, STEPS.1);
             if fitted.deviation > LOWER * node.deviation {
                 break;
             }

@@ -37,6 +37,7 @@ fn climb(plant: &Plant, sizes: Vec<Vec<Node>>) -> Climb {
     Climb {
         nodes: std::iter::once(vec![base.clone()]).chain(sizes).collect(),
         ranking: Vec::new(),
+        screened: Vec::new(),
         refused: Vec::new(),
         beam: Vec::new(),
         base,

@@ -42,6 +42,34 @@ fn where_a_leading_candidate_is_inside_the_budget_those_that_promise_little_are_
 }
 
 #[test]
+fn beside_the_base_what_promises_far_less_than_it_must_gain_is_not_fitted() {
+    let plant = Plant::new(6, &[]);
+    let fitted = |better: f64| {
+        let mut search = search(&plant, Thresholds { better, ..Thresholds::default() });
+        let base = search.base(Plant::model(&[]));
+        let (children, screened) = search.expand(&base, &base, 1, None);
+        (children.len(), screened.promises.iter().map(|p| p.gain).fold(0.0, f64::max))
+    };
+    let (few, most) = fitted(80.0);
+    assert!(few == 0 && most < 12.0, "{few} {most}");
+    assert!(fitted(most).0 > 0);
+}
+
+#[test]
+fn what_was_screened_beside_a_model_as_good_is_not_screened_again() {
+    let plant = Plant::new(6, &[(WAVE, &[0.1])]);
+    let search = search(&plant, narrow());
+    let with = |size: f64| node(&plant, &[(WAVE, &[size])]);
+    let mut climb = climb(&plant, vec![vec![with(0.1)]]);
+    // A screening that no other one is.
+    climb.screened.push((with(0.1), Screened::default()));
+    let again = |node: &Node| !search.beside(&climb, node).promises.is_empty();
+    assert!(!again(&with(0.1)) && !again(&with(0.1001)));
+    let elsewhere = fit::evaluated(&plant, Plant::model(&[(WAVE, &[0.1])]), 1);
+    assert!(again(&elsewhere) && again(&climb.base));
+}
+
+#[test]
 fn a_search_ends_where_chance_gains_as_much_as_the_best_candidate() {
     // Beside what is missing a tone is fitted and gains something: once what chance seldom does, once what it often does.
     // Whatever it gained would stand.
@@ -61,10 +89,15 @@ fn a_search_ends_where_chance_gains_as_much_as_the_best_candidate() {
 
 #[test]
 fn what_gains_too_little_is_no_set_to_go_on_from() {
-    let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+    // So weak that the first order sees most of what it gains.
+    let plant = Plant::new(1, &[(WAVE, &[0.0015])]);
     let (climb, _) = first(&plant, &[WAVE], narrow());
     assert!(!climb.ended && climb.nodes.len() == 2);
-    let (climb, names) = first(&plant, &[WAVE], Thresholds { better: 1e6, ..narrow() });
+    let gain = search(&plant, narrow()).comparison.compare(&climb.base, climb.top().0).nats;
+    // More than it gains, not so much that it is not fitted.
+    let better = 6.0 * screen(&plant, &plant, &climb.base, &[WAVE], false).promises[0].gain;
+    assert!(better > gain, "{better} {gain}");
+    let (climb, names) = first(&plant, &[WAVE], Thresholds { better, ..narrow() });
     assert!(climb.ended && climb.nodes.len() == 1);
     assert_eq!(names, ["wave"]);
 }

@@ -44,6 +44,21 @@ fn a_lower_valley_beside_is_leapt_to_and_a_higher_one_is_not() {
 }
 
 #[test]
+fn the_way_to_a_lower_valley_is_gone_on_a_part_and_its_end_on_all() {
+    let mut plant = plant();
+    plant.leaps = vec![TONES[1]];
+    // On this part the far valley is no lower one.
+    plant.part = Some(Box::new(Plant::new(2, &[(TONE, &[0.05, TONES[0]])])));
+    let stays = search(&plant, narrow()).gone_far(&Plant::model(&[(TONE, &[0.05, TONES[0]])]), 0);
+    assert!((omega(&stays) / TONES[0] - 1.0).abs() < 0.1, "{}", omega(&stays));
+    // What a part leads to stands only where it is better on all.
+    let at_best = node(&plant, &[(TONE, &[0.05, TONES[1]])]);
+    let there = search(&plant, narrow()).rescanned(&at_best);
+    assert!(there.deviation <= at_best.deviation);
+    assert!((omega(&there) / TONES[1] - 1.0).abs() < 0.01, "{}", omega(&there));
+}
+
+#[test]
 fn a_flexible_form_stands_where_it_gains_enough_and_not_where_it_gains_less() {
     // A bend so small that it gains something, and less than a form must.
     for (bend, gained, expected) in [(0.05, true, BENT), (0.00015, true, WAVE), (0.0, false, WAVE)]
