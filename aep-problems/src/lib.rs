@@ -16,9 +16,11 @@
 
 mod definition;
 mod dejong;
+mod noise;
 pub mod paper;
 mod problem;
 mod suite;
+pub mod tasks;
 
 pub use definition::{Definition, Dimension, Shift};
 pub use dejong::{F1, F2, F3, F4, F5};
