@@ -7,8 +7,8 @@
 
 use aep_core::random::Streams;
 use aep_core::{
-    Budget, CmaEs, Driver, LeastSquares, Method, Problem, Purpose, Refined, Restarts, Start, methods,
-    minimize, polish,
+    Budget, CmaEs, Driver, LeastSquares, Method, Problem, Purpose, Refined, Restarts, Start,
+    methods, minimize, polish,
 };
 use aep_problems::tasks::{self, Identification, Task};
 
@@ -70,9 +70,14 @@ fn search(task: &'static Task) -> Result<()> {
     let best = finer(&problem, least.ok_or("no search")?.clone())?;
     let from_truth = finer(&problem, polish(&problem, &task.truth())?)?;
     let best = if from_truth.cost < best.cost { from_truth } else { best };
-    let there = |ends: &[Refined]| ends.iter().filter(|end| end.cost <= best.cost * (1.0 + task.tolerance)).count();
+    let there = |ends: &[Refined]| {
+        ends.iter().filter(|end| end.cost <= best.cost * (1.0 + task.tolerance)).count()
+    };
     let Refined { position, cost } = &best;
-    println!("{}: const BEST: Best = Best {{ cost: {cost:?}, position: &{position:?} }};", task.name);
+    println!(
+        "{}: const BEST: Best = Best {{ cost: {cost:?}, position: &{position:?} }};",
+        task.name
+    );
     println!(
         "  {} residuals; {} of {DESCENTS} descents and {} of {} polished searches end there; with the true parameters {:.3}; {:.0} s",
         problem.residuals(position).len(),
@@ -87,7 +92,10 @@ fn search(task: &'static Task) -> Result<()> {
 
 fn main() -> Result<()> {
     let names: Vec<String> = std::env::args().skip(1).collect();
-    for task in tasks::ALL.iter().filter(|task| names.is_empty() || names.iter().any(|name| name == task.name)) {
+    for task in tasks::ALL
+        .iter()
+        .filter(|task| names.is_empty() || names.iter().any(|name| name == task.name))
+    {
         search(task)?;
     }
     Ok(())

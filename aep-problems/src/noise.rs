@@ -1,7 +1,7 @@
 //! Noise that can be repeated.
 
-use aep_core::random::{Stream, Streams};
 use aep_core::Purpose;
+use aep_core::random::{Stream, Streams};
 
 /// The random numbers of an evaluation: a function of `seed` and of the position, so that a noisy run
 /// can be repeated too.

@@ -24,7 +24,18 @@ const PARAMETERS: &[Parameter] = &[
     decades("capacity", "A h", 2.3, (0.5, 10.0)),
 ];
 
-const BEST: Best = Best { cost: 1.0, position: &[0.031, 0.018, 800.0, 0.04, 9e3, 0.72, 2.3] };
+const BEST: Best = Best {
+    cost: 588.9645861349702,
+    position: &[
+        0.030949167872011275,
+        0.037319766915392946,
+        9051.09405641122,
+        0.01795495408150721,
+        798.1475505514896,
+        0.7202246392256892,
+        2.245292799623062,
+    ],
+};
 
 const STEP: f64 = 2.0;
 const SAMPLES: usize = 600;

@@ -22,7 +22,16 @@ const PARAMETERS: &[Parameter] = &[
     linear("background", "1", 0.3, (-5.0, 5.0)),
 ];
 
-const BEST: Best = Best { cost: 1.0, position: &[3.0, 0.4, 2.0, 1.7, 0.3] };
+const BEST: Best = Best {
+    cost: 160.72871794073333,
+    position: &[
+        2.935475131087051,
+        0.396179662762503,
+        2.0598236460135917,
+        1.6315403174823344,
+        0.3004400590938579,
+    ],
+};
 
 const STEP: f64 = 0.05;
 const SAMPLES: usize = 200;

@@ -25,7 +25,17 @@ const PARAMETERS: &[Parameter] = &[
     linear("bulge", "1/m", -1100.0, (-4000.0, 4000.0)),
 ];
 
-const BEST: Best = Best { cost: 1.0, position: &[2.0, 10.0, 5e4, 5e4, 800.0, -1100.0] };
+const BEST: Best = Best {
+    cost: 661.2751150598892,
+    position: &[
+        2.0003160476217445,
+        9.880293529931798,
+        50011.99029428044,
+        49994.65664594199,
+        801.368174628994,
+        -1101.4217698984376,
+    ],
+};
 
 const STEP: f64 = 1.0 / 750.0;
 const SAMPLES: usize = 600;

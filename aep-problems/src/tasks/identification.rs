@@ -77,8 +77,10 @@ impl Identification {
     }
 }
 
+/// Whatever kind of NaN a simulation ended in, the cost is the one that sorts behind all others.
 fn sum_of_squares(residuals: &[f64]) -> f64 {
-    residuals.iter().map(|residual| residual * residual).sum()
+    let sum: f64 = residuals.iter().map(|residual| residual * residual).sum();
+    if sum.is_nan() { f64::NAN } else { sum }
 }
 
 impl LeastSquares for Identification {

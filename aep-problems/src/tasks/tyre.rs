@@ -23,7 +23,17 @@ const PARAMETERS: &[Parameter] = &[
     linear("shift_force", "N", -60.0, (-1000.0, 1000.0)),
 ];
 
-const BEST: Best = Best { cost: 1.0, position: &[9.5, 1.35, 3900.0, -0.4, 0.006, -60.0] };
+const BEST: Best = Best {
+    cost: 234.67666630688421,
+    position: &[
+        9.157788442089425,
+        1.3865343428767292,
+        3910.2415837583953,
+        -0.3432199025679954,
+        0.005886920012676813,
+        -64.54682405265153,
+    ],
+};
 
 const SAMPLES: usize = 240;
 /// Largest slip angle, rad.
