@@ -127,6 +127,11 @@ impl TestProblem {
         self
     }
 
+    /// Whether noise was added.
+    pub fn is_noisy(&self) -> bool {
+        self.noise.is_some()
+    }
+
     /// A component after a shift: as it is, or wrapped into the domain.
     fn moved(&self, z: f64) -> f64 {
         let (lower, upper) = self.definition.limits;

@@ -54,6 +54,11 @@ impl Identification {
         Self { noise: 0.0, ..self }
     }
 
+    /// Whether the simulator gives other predictions at each position.
+    pub fn is_noisy(&self) -> bool {
+        self.noise > 0.0
+    }
+
     /// The cost without the noise of the simulator: what decides whether a run is successful.
     pub fn exact(&self, x: &[f64]) -> f64 {
         let mut residuals = Vec::with_capacity(self.recording.len());

@@ -3,6 +3,7 @@
 //! ```sh
 //! pip install numpy scipy cma nevergrad       # what is missing is skipped, and said
 //! cargo run --release -p benches --bin tasks -- [--python python3] [-o FOLDER]
+//! cargo run --release -p benches --bin tasks -- --keep --methods ours          # ours anew, the others as they were
 //! cargo run --release -p benches --bin tasks -- --widths
 //! ```
 //!
@@ -57,6 +58,9 @@ struct Args {
     /// Folder for tasks.md and tasks.csv
     #[arg(short, long, default_value = "tasks")]
     output: PathBuf,
+    /// Keep what tasks.csv has of others: only what is run now is new
+    #[arg(long)]
+    keep: bool,
     /// What populations of 10, 100 and 1,000 do to evaluations and time, in place of the table
     #[arg(long)]
     widths: bool,
@@ -71,9 +75,6 @@ pub enum Contestant {
     Descents,
 }
 
-/// The peer that is told the residuals.
-const LEAST_SQUARES: &str = "scipy least_squares";
-
 impl Contestant {
     pub fn name(&self) -> &str {
         match self {
@@ -81,15 +82,6 @@ impl Contestant {
             Self::Other(peer) => peer.name(),
             Self::Python(name) => name,
             Self::Descents => "polish",
-        }
-    }
-
-    fn group(&self) -> Group {
-        match self {
-            Self::Ours(_) => Group::Ours,
-            Self::Descents => Group::Told,
-            Self::Python(name) if name == LEAST_SQUARES => Group::Told,
-            Self::Other(_) | Self::Python(_) => Group::Others,
         }
     }
 
@@ -127,7 +119,7 @@ fn main() -> Result<()> {
     let contestants = ours.chain(others).chain(python.into_iter().map(Contestant::Python));
     let contestants = contestants.chain([Contestant::Descents]);
     let asked = |contestant: &Contestant| {
-        let kind = match contestant.group() {
+        let kind = match Group::of(contestant.name()) {
             Group::Ours => "ours",
             Group::Others => "others",
             Group::Told => "told",
@@ -140,10 +132,13 @@ fn main() -> Result<()> {
         return Err("no such task or method; leave --tasks and --methods out to see all".into());
     }
     std::fs::create_dir_all(&args.output)?;
-    let mut cells = Vec::new();
+    let file = args.output.join("tasks.csv");
+    let mut cells =
+        if args.keep { result::read(&std::fs::read_to_string(&file)?)? } else { Vec::new() };
     for case in &cases {
-        let told = |contestant: &Contestant| contestant.group() == Group::Told;
+        let told = |contestant: &Contestant| Group::of(contestant.name()) == Group::Told;
         for contestant in contestants.iter().filter(|c| !told(c) || case.facts.residuals) {
+            cells.retain(|cell| cell.task != case.name || cell.method != contestant.name());
             let run = |trial: usize| {
                 contestant
                     .run(case, case.seed(trial), case.budget(args.budget), &pool)
@@ -152,10 +147,10 @@ fn main() -> Result<()> {
             let trials: std::result::Result<Vec<Trial>, String> =
                 (0..args.trials).into_par_iter().map(run).collect();
             let (task, method) = (case.name.clone(), contestant.name().to_owned());
-            let cell = Cell { task, method, group: contestant.group(), trials: trials? };
+            let cell = Cell { task, method, trials: trials? };
             eprintln!("{}: {} {}", cell.task, cell.method, cell.in_words());
             cells.push(cell);
-            std::fs::write(args.output.join("tasks.csv"), result::csv(&cells))?;
+            std::fs::write(&file, result::csv(&cells))?;
         }
     }
     let mut text = result::tables(&cells);
