@@ -15,7 +15,7 @@ pub struct Trial {
 }
 
 /// Whose method it is, and what it is told.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
     Ours,
     Others,
@@ -138,7 +138,8 @@ pub fn cell<'a>(cells: &'a [Cell], task: &str, method: &str) -> Option<&'a Cell>
 }
 
 pub fn tables(cells: &[Cell]) -> String {
-    let (tasks, methods) = (once(cells, |cell| &cell.task), once(cells, |cell| &cell.method));
+    let (tasks, mut methods) = (once(cells, |cell| &cell.task), once(cells, |cell| &cell.method));
+    methods.sort_by_key(|method| Group::of(method));
     let mut text = String::from("## All\n\nExpected evaluations, solved trials in brackets.\n\n");
     let _ = writeln!(
         text,
