@@ -147,6 +147,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let mut part = table(&comparison);
     part.notes.extend(notes);
+    if problem.known().is_noisy() {
+        part.notes.push("costs have noise in them, and so has 'solved'".to_owned());
+    }
     if let Some(path) = &args.html {
         part.figures.push(curves(problem.known(), &results, curve_plot::figure));
         let summary = format!("{} trials of each, the same first populations.", args.trials);
@@ -225,8 +228,10 @@ fn of_task(args: &Args, task: &'static Task) -> Result<Chosen, Failure> {
 fn recommended(args: &Args, problem: &Chosen, notes: &mut Vec<String>) -> Box<dyn Method> {
     let evaluations = if args.generations.is_some() { 0 } else { args.evaluations };
     let advice = recommend(&problem.facts(), evaluations);
-    let polish = if advice.polish { "; then aep_core::polish, as the task has residuals" } else { "" };
-    notes.push(format!(". auto: {}, {}{polish}", advice.method.name, advice.why));
+    notes.push(format!("auto: {}, {}", advice.method.name, advice.why));
+    if advice.polish {
+        notes.push("a program that has the residuals begins with aep_core::polish from random places".to_owned());
+    }
     (advice.method.build)(if args.population == 0 { advice.population } else { args.population })
 }
 
@@ -331,7 +336,7 @@ fn table(comparison: &Comparison) -> Part {
 }
 
 fn report(part: &Part, files: &[PathBuf]) -> String {
-    let mut text = format!("{}\n {}\n", Table::of(part), dim(&part.notes.concat()));
+    let mut text = format!("{}\n {}\n", Table::of(part), dim(&part.notes.join("; ")));
     for file in files {
         let _ = writeln!(text, " {} {}", dim("written"), file.display());
     }

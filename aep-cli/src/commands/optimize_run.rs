@@ -5,8 +5,8 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use aep_core::{
-    Budget, Driver, Method, Outcome, Problem, Progress as Generation, RunError, Start, StopReason,
-    Trace, TraceFormat,
+    Budget, Driver, Method, Outcome, Progress as Generation, RunError, Start, StopReason, Trace,
+    TraceFormat,
 };
 use aep_problems::Known;
 

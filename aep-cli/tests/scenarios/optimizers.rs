@@ -66,7 +66,8 @@ fn identification_tasks_are_listed_told_and_solved_by_the_recommended_method() {
     // Half of the domain fails, and that is counted.
     assert!(json["summaries"][1]["failures"].as_u64().unwrap() > 10);
     for flag in ["--dimension 3", "--shift", "--noise"] {
-        desk.aep(&format!("optimize failing-rod {flag}")).refused(&["as it was recorded", "leave --"]);
+        desk.aep(&format!("optimize failing-rod {flag}"))
+            .refused(&["as it was recorded", "leave --"]);
     }
 }
 

@@ -43,11 +43,12 @@ impl Facts {
 /// What to run.
 #[derive(Clone, Copy)]
 pub struct Advice {
-    /// The method.
+    /// The method, for a cost of which nothing else is told.
     pub method: &'static Named,
     /// Its population; 0 for its own default.
     pub population: usize,
-    /// Whether [`crate::polish`] should go on from what it finds.
+    /// Whether to begin with [`crate::polish`] from random places, one after the other: where a task gives
+    /// its residuals, that needed fewer evaluations than any search.
     pub polish: bool,
     /// Why this method, in one line.
     pub why: &'static str,
@@ -65,9 +66,9 @@ struct Rule {
 /// docs/optimizers.md, "Tasks and peers".
 const RULES: &[Rule] = &[
     Rule {
-        holds: |facts, budget| facts.dimension > 20 && budget < 200,
-        method: "cma-es",
-        why: "many components and few evaluations: the method that needs the fewest",
+        holds: |facts, budget| facts.dimension <= 5 && budget >= 5_000,
+        method: "de",
+        why: "few parameters and many evaluations: it misses the fewest best minima",
     },
     Rule { holds: |_, _| true, method: "cma-es", why: "needs the fewest evaluations on most fits" },
 ];
@@ -92,7 +93,7 @@ pub fn recommend(facts: &Facts, evaluations: u64) -> Advice {
         .expect("the last rule holds always and names a method");
     // A generation narrower than what runs at once leaves machines idle.
     let population = if facts.width > USUAL { facts.width } else { 0 };
-    Advice { method, population, polish: facts.residuals && !facts.noisy, why: rule.why }
+    Advice { method, population, polish: facts.residuals, why: rule.why }
 }
 
 /// About what the methods have as their own population.
@@ -116,11 +117,18 @@ mod tests {
     }
 
     #[test]
-    fn noise_forbids_a_descent_and_residuals_ask_for_one() {
-        let facts = Facts::new(5);
-        assert!(!recommend(&facts, 1_000).polish);
-        assert!(recommend(&facts.with_residuals(), 1_000).polish);
-        assert!(!recommend(&facts.with_residuals().with_noise(true), 1_000).polish);
+    fn residuals_ask_for_descents() {
+        assert!(!recommend(&Facts::new(5), 1_000).polish);
+        assert!(recommend(&Facts::new(5).with_residuals().with_noise(true), 1_000).polish);
+    }
+
+    #[test]
+    fn many_evaluations_a_component_are_for_the_method_that_misses_least() {
+        let advised =
+            |dimension, evaluations| recommend(&Facts::new(dimension), evaluations).method.name;
+        assert_eq!(advised(5, 50_000), "de");
+        assert_eq!(advised(5, 5_000), "cma-es");
+        assert_eq!(advised(20, 1_000_000), "cma-es");
     }
 
     #[test]

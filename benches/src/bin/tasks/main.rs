@@ -108,7 +108,7 @@ impl Contestant {
 fn main() -> Result<()> {
     let args = Args::parse();
     if args.widths {
-        return widths::main(args.trials.min(3));
+        return widths::main(&args.methods, args.trials.min(3));
     }
     let cases = case::all().into_iter();
     let cases: Vec<Case> =

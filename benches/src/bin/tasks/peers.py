@@ -120,4 +120,6 @@ while line := answers.readline():
         PEERS[request["peer"]][0](request)
     except Over:
         pass
+    except Exception as error:  # It gives up; the next seed is tried.
+        print(f"{request['peer']}: {error!r}", file=sys.stderr)
     channel.write(b"D")
