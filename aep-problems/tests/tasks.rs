@@ -1,9 +1,7 @@
 //! What holds for every identification task.
 
 use aep_core::random::Streams;
-use aep_core::{
-    Batch, Budget, LeastSquares, Problem, Purpose, Scale, methods, minimize, polish,
-};
+use aep_core::{Batch, Budget, LeastSquares, Problem, Purpose, Scale, methods, minimize, polish};
 use aep_problems::tasks::{self, Identification, Task};
 
 /// Positions anywhere in the domain.
@@ -95,7 +93,11 @@ fn the_cost_is_the_sum_of_squared_residuals_and_a_batch_is_its_rows_to_the_bit()
             let residuals = problem.residuals(x);
             assert_eq!(residuals.len(), problem.residuals(&task.truth()).len(), "{}", task.name);
             let sum: f64 = residuals.iter().map(|residual| residual * residual).sum();
-            assert!(sum.to_bits() == cost.to_bits() || sum.is_nan() && cost.is_nan(), "{}", task.name);
+            assert!(
+                sum.to_bits() == cost.to_bits() || sum.is_nan() && cost.is_nan(),
+                "{}",
+                task.name
+            );
         }
         let rows = places.concat();
         for size in [1, 3, 23] {

@@ -1,13 +1,13 @@
 //! Friction and thirteen harmonics of a motor's cogging: thirty parameters.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use super::task::{Best, Model, Parameter, Task, decades, linear};
 
 pub const TASK: Task = Task {
     name: "cogging",
     subject: "thirteen harmonics of cogging (amplitude and phase), and the Stribeck curve, from torque",
-    character: "thirty parameters; harmonics overlap as the stroke is shorter than a revolution; phases are periodic",
+    character: "thirty parameters; phases are periodic, each has its best twice",
     reference: "P. J. Hor et al., Minimization of cogging force in a linear permanent magnet motor, IEEE Trans. \
                 Magnetics 34, 1998",
     parameters: PARAMETERS,
@@ -18,7 +18,8 @@ pub const TASK: Task = Task {
 };
 
 const AMPLITUDES: (f64, f64) = (0.0, 0.5);
-const PHASES: (f64, f64) = (-PI, PI);
+/// Twice around, so that a search need not turn back where a phase begins anew.
+const PHASES: (f64, f64) = (-TAU, TAU);
 
 const fn amplitude(name: &'static str, truth: f64) -> Parameter {
     linear(name, "N m", truth, AMPLITUDES)
@@ -62,45 +63,45 @@ const PARAMETERS: &[Parameter] = &[
 ];
 
 const BEST: Best = Best {
-    cost: 389.82116149567946,
+    cost: 393.2195629894679,
     position: &[
-        0.39855380171747296,
-        0.029374600545424293,
-        0.2495783875226279,
-        0.30083728590844205,
-        0.16298924323758995,
-        0.510997043728832,
-        0.11588415309881452,
-        -1.1123076410155566,
-        0.15236594099442582,
-        2.9763243007691833,
-        0.3001516680350568,
-        -0.09522287522553224,
-        0.12473521254816558,
-        3.141592653589793,
-        0.16050503660806614,
-        -1.9889725322852438,
-        0.08269693864927018,
-        3.0753254764416065,
-        0.12479638524968843,
-        -0.42097249690543576,
-        0.0800319062511729,
-        2.5837061647520527,
-        0.06189402521049325,
-        -0.17215089101186062,
-        0.1002176570402351,
-        2.2241239367152055,
-        0.30917325518567873,
-        -1.4677103404798062,
-        0.03651017466453066,
-        0.3136035720990902,
+        0.40110396614602045,
+        0.02849154916571314,
+        0.24858606055670085,
+        0.2950573014892633,
+        0.20925706810412742,
+        0.41218525755845514,
+        0.12018704406423919,
+        -1.900910961243659,
+        0.050314075793739,
+        2.2029750566163484,
+        0.16913507481280585,
+        -0.2928085897464451,
+        0.030936298181874426,
+        1.080101792282549,
+        0.2585114454225923,
+        -2.400499508728498,
+        0.0407834472076167,
+        0.9757331780079357,
+        0.0766130546461172,
+        -1.1949583200688099,
+        0.05962001380539889,
+        1.7035274483348728,
+        0.03019853415600377,
+        -0.7950433501383737,
+        0.09055488425771165,
+        2.0076000424807146,
+        0.31048573962662407,
+        -1.4965204269732197,
+        0.03983521907625922,
+        0.13027582246814012,
     ],
 };
 
 const HARMONICS: usize = 13;
 const SAMPLES: usize = 400;
 /// Of a revolution.
-const STROKE: f64 = 0.8;
+const STROKE: f64 = 1.3;
 /// N m.
 const SENSOR: f64 = 0.02;
 

@@ -21,6 +21,8 @@
 //! # Ok::<(), aep_core::RunError>(())
 //! ```
 
+#![expect(clippy::unreadable_literal, reason = "known bests stand as the search prints them")]
+
 mod identification;
 mod integrate;
 mod task;

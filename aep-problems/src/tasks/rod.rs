@@ -51,7 +51,7 @@ impl Model for Rod {
                 let right = if i + 1 == NODES { 0.0 } else { towards(i + 1) };
                 *node += STEP / capacity * (left + right - loss * before[i]);
             }
-            if rod.iter().any(|node| !(node.abs() < MELTED)) {
+            if !rod.iter().all(|node| node.abs() < MELTED) {
                 out.resize(out.len() + 2 * (SAMPLES - sample), f64::NAN);
                 return;
             }
