@@ -1,4 +1,8 @@
-//! The methods by name, for command lines and comparisons.
+//! The methods by name, for command lines and comparisons; and [`recommend`], which names one for a task.
+
+mod recommend;
+
+pub use recommend::{Advice, Facts, recommend};
 
 use crate::{Aep, CmaEs, De, MetaEp, Method, Restarting};
 

@@ -1,8 +1,8 @@
-//! Test functions for optimizers, with domain, optimum and reference.
+//! Test functions for optimizers, with domain, optimum and reference, and identification tasks with a known best.
 //!
 //! [`ALL`] lists them; [`find`] gets one by name. A [`Definition`] becomes a problem with
 //! [`Definition::usual`] or [`Definition::in_dimension`], and [`TestProblem`] can move its optimum
-//! away from the middle of the domain, which flatters many methods.
+//! away from the middle of the domain, which flatters many methods. [`tasks`] are fits of models to recordings.
 //!
 //! ```
 //! use aep_core::{Aep, Budget, minimize};
@@ -16,12 +16,16 @@
 
 mod definition;
 mod dejong;
+mod known;
+mod noise;
 pub mod paper;
 mod problem;
 mod suite;
+pub mod tasks;
 
 pub use definition::{Definition, Dimension, Shift};
 pub use dejong::{F1, F2, F3, F4, F5};
+pub use known::Known;
 pub use problem::{ProblemError, TestProblem};
 pub use suite::{
     ACKLEY, ELLIPSOID, GRIEWANK, LEVY, POWERS, RASTRIGIN, ROSENBROCK, SCHWEFEL, SCHWEFEL_1_2,

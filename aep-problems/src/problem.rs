@@ -3,6 +3,7 @@
 use aep_core::random::{self, Streams};
 use aep_core::{ConfigError, Domain, Problem, Purpose};
 
+use crate::noise::stream_at;
 use crate::{Definition, Shift};
 
 /// A test function in a chosen dimension, on request with a moved optimum and with noise.
@@ -126,6 +127,11 @@ impl TestProblem {
         self
     }
 
+    /// Whether noise was added.
+    pub fn is_noisy(&self) -> bool {
+        self.noise.is_some()
+    }
+
     /// A component after a shift: as it is, or wrapped into the domain.
     fn moved(&self, z: f64) -> f64 {
         let (lower, upper) = self.definition.limits;
@@ -137,9 +143,7 @@ impl TestProblem {
 
     fn noise(&self, z: &[f64]) -> f64 {
         let Some(seed) = self.noise else { return 0.0 };
-        let key =
-            z.iter().fold(seed, |key, z| Streams::new(key, Purpose::Trial, z.to_bits()).word(0));
-        random::normal(&mut Streams::new(key, Purpose::Trial, 1).stream(0))
+        random::normal(&mut stream_at(seed, z))
     }
 }
 

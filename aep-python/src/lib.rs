@@ -14,6 +14,7 @@ mod own_family;
 mod reading;
 mod search;
 mod space;
+mod task;
 mod trials;
 mod watched;
 
@@ -40,6 +41,8 @@ mod _aep {
     use super::reading::Data;
     #[pymodule_export]
     use super::space::Space;
+    #[pymodule_export]
+    use super::task::{Task, tasks};
     #[pymodule_export]
     use super::trials::{rank_test, trials};
 }

@@ -1,4 +1,4 @@
-//! `aep optimize`: optimizers compared on a test function.
+//! `aep optimize`: optimizers compared on a test function or an identification task.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -6,13 +6,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use aep_core::trials::{Plan, RankTest, Summary, Trials, rank_test};
-use aep_core::{Budget, Method, methods};
-use aep_problems::TestProblem;
+use aep_core::methods::{self, Facts, recommend};
+use aep_core::{Budget, Method};
+use aep_problems::tasks::{Identification, Task};
+use aep_problems::{Known, TestProblem};
 use aep_studio::report::plain::{self, Part};
 use serde::Serialize;
 
 use super::optimize_run::{self, RunArgs};
-use super::problems::known;
+use super::problems::{Listed, known};
 use super::reproduce::keep;
 use crate::app::Global;
 use crate::curve_plot::{self, Axes, Curve};
@@ -22,19 +24,20 @@ use crate::progress::Progress;
 use crate::report::command;
 use crate::stop;
 
-/// Compare optimizers on a test function: same initial populations, statistics over trials
+/// Compare optimizers on a test function or an identification task: same initial populations, statistics over trials
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   aep optimize rosenbrock --algorithm aep-practical,de,cma-es --trials 50
+  aep optimize two-mass --algorithm auto,de --evaluations 7000
   aep optimize f5 --algorithm aep,meta-ep --generations 1500 -o f5
   aep optimize rastrigin --dimension 5 --shift --evaluations 50000
   aep optimize f4 --algorithm aep-practical --trace run.csv --checkpoint run.ckpt
   aep optimize f4 --algorithm aep-practical --resume run.ckpt")]
 pub struct Args {
-    /// Test function ('aep problems' lists them)
+    /// Test function or identification task ('aep problems' lists them)
     #[arg(value_name = "PROBLEM")]
     problem: String,
-    /// Optimizers; the first one is compared with each of the others
+    /// Optimizers; the first one is compared with each of the others; 'auto' takes the one that is recommended for the problem
     #[arg(
         long,
         value_name = "NAMES",
@@ -101,9 +104,13 @@ struct Comparison {
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let problem = problem(args)?;
-    let chosen = args.algorithm.iter().map(|name| method(name, args.population));
+    let mut notes = Vec::new();
+    let chosen = args.algorithm.iter().map(|name| match name.as_str() {
+        "auto" => Ok(recommended(args, &problem, &mut notes)),
+        name => method(name, args.population),
+    });
     let chosen = chosen.collect::<Result<Vec<Box<dyn Method>>, Failure>>()?;
-    let target = args.target.unwrap_or_else(|| problem.target());
+    let target = args.target.unwrap_or_else(|| problem.known().target());
     if args.single.wanted() {
         let [method] = &chosen[..] else {
             let what = "--trace, --checkpoint and --resume follow a single run";
@@ -113,11 +120,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
             return Err(Failure::bad_input("a single run has no page")
                 .with_hint("leave --html out: --trace run.csv has every generation"));
         }
-        let run = (budget(args, target), args.seed);
-        let problem = if args.shift { problem.with_random_shift(args.seed) } else { problem };
-        return optimize_run::run(&args.single, &**method, &problem, run, global);
+        let run = (budget(args, problem.known(), target), args.seed);
+        let problem = if args.shift { problem.shifted(args.seed) } else { problem };
+        return optimize_run::run(&args.single, &**method, problem.known(), run, global);
     }
-    let plan = Plan::new(args.trials as usize, budget(args, target)).with_seed(args.seed);
+    let plan = Plan::new(args.trials as usize, budget(args, problem.known(), target)).with_seed(args.seed);
     let progress = Progress::new(global.quiet);
     progress.count_to(u64::from(args.trials) * chosen.len() as u64);
     let stop = stop::flag();
@@ -134,18 +141,22 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if interrupted && results.is_empty() {
         return Err(Failure::interrupted("no trial had ended"));
     }
-    let comparison = compare(&problem, target, plan, &results);
+    let comparison = compare(problem.known(), target, plan, &results);
     if let Some(path) = &args.json {
         output::save_json(path, &comparison)?;
     }
     let mut part = table(&comparison);
+    part.notes.extend(notes);
+    if problem.known().is_noisy() {
+        part.notes.push("costs have noise in them, and so has 'solved'".to_owned());
+    }
     if let Some(path) = &args.html {
-        part.figures.push(curves(&problem, &results, curve_plot::figure));
+        part.figures.push(curves(problem.known(), &results, curve_plot::figure));
         let summary = format!("{} trials of each, the same first populations.", args.trials);
         output::save(path, &plain::page("Optimizers compared", &summary, std::slice::from_ref(&part), &command()))?;
     }
     let files = args.output.as_deref().map_or(Ok(Vec::new()), |directory| {
-        write(directory, &problem, &comparison, &results)
+        write(directory, problem.known(), &comparison, &results)
     })?;
     let own_stdout = args.html.as_deref().is_some_and(|path| path.as_os_str() == "-");
     if !global.quiet && !own_stdout {
@@ -157,18 +168,77 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     Ok(())
 }
 
-fn problem(args: &Args) -> Result<TestProblem, Failure> {
-    let definition = known(&args.problem)?;
+/// What is to be solved.
+enum Chosen {
+    Function(TestProblem),
+    Task(Identification),
+}
+
+impl Chosen {
+    fn known(&self) -> &dyn Known {
+        match self {
+            Self::Function(function) => function,
+            Self::Task(task) => task,
+        }
+    }
+
+    /// A function with its optimum elsewhere.
+    fn shifted(self, seed: u64) -> Self {
+        match self {
+            Self::Function(function) => Self::Function(function.with_random_shift(seed)),
+            Self::Task(_) => self,
+        }
+    }
+
+    fn facts(&self) -> Facts {
+        let known = self.known();
+        let facts = Facts::new(known.domain().dimension()).with_noise(known.is_noisy());
+        match self {
+            Self::Function(_) => facts,
+            Self::Task(_) => facts.with_residuals(),
+        }
+    }
+}
+
+fn problem(args: &Args) -> Result<Chosen, Failure> {
+    let definition = match known(&args.problem)? {
+        Listed::Function(definition) => definition,
+        Listed::Task(task) => return of_task(args, task),
+    };
     let dimension = args.dimension.unwrap_or_else(|| definition.dimension.usual());
     let problem = definition
         .in_dimension(dimension)
         .map_err(|error| Failure::bad_input(error.to_string()).with_hint("change --dimension"))?;
-    Ok(if args.noise { problem.with_noise(args.seed) } else { problem })
+    Ok(Chosen::Function(if args.noise { problem.with_noise(args.seed) } else { problem }))
+}
+
+/// A task is as it is.
+fn of_task(args: &Args, task: &'static Task) -> Result<Chosen, Failure> {
+    let unknown = [("--dimension", args.dimension.is_some()), ("--shift", args.shift), ("--noise", args.noise)];
+    match unknown.iter().find(|(_, given)| *given) {
+        Some((flag, _)) => {
+            let what = format!("{flag} is for test functions: the task '{}' is as it was recorded", task.name);
+            Err(Failure::bad_input(what).with_hint(format!("leave {flag} out")))
+        }
+        None => Ok(Chosen::Task(task.problem())),
+    }
+}
+
+/// The method that is recommended, and why.
+fn recommended(args: &Args, problem: &Chosen, notes: &mut Vec<String>) -> Box<dyn Method> {
+    let evaluations = if args.generations.is_some() { 0 } else { args.evaluations };
+    let advice = recommend(&problem.facts(), evaluations);
+    notes.push(format!("auto: {}, {}", advice.method.name, advice.why));
+    if advice.polish {
+        notes.push("a program that has the residuals begins with aep_core::polish from random places".to_owned());
+    }
+    (advice.method.build)(if args.population == 0 { advice.population } else { args.population })
 }
 
 fn method(name: &str, population: usize) -> Result<Box<dyn Method>, Failure> {
     let named = methods::find(name).ok_or_else(|| {
-        let names: Vec<&str> = methods::ALL.iter().map(|method| method.name).collect();
+        let names = methods::ALL.iter().map(|method| method.name);
+        let names: Vec<&str> = names.chain(["auto"]).collect();
         let hint = format!("there are: {}", names.join(", "));
         Failure::bad_input(format!("no optimizer '{name}'")).with_hint(hint)
     })?;
@@ -176,7 +246,7 @@ fn method(name: &str, population: usize) -> Result<Box<dyn Method>, Failure> {
 }
 
 /// A noisy cost says nothing about being there, so noise leaves the target out of the budget.
-fn budget(args: &Args, target: f64) -> Budget {
+fn budget(args: &Args, problem: &dyn Known, target: f64) -> Budget {
     let budget = match args.generations {
         Some(generations) => Budget::generations(generations),
         None => Budget::evaluations(args.evaluations),
@@ -185,32 +255,36 @@ fn budget(args: &Args, target: f64) -> Budget {
         Some(seconds) => budget.with_time(Duration::from_secs_f64(seconds.min(1e9))),
         None => budget,
     };
-    if args.noise { budget } else { budget.with_target(target) }
+    if problem.is_noisy() { budget } else { budget.with_target(target) }
 }
 
 fn trials(
     args: &Args,
     plan: &Plan,
     method: &dyn Method,
-    problem: &TestProblem,
+    problem: &Chosen,
     (stop, progress): (&AtomicBool, &Progress),
 ) -> Result<Trials, Failure> {
-    let of_trial = |trial: usize| {
-        let problem = problem.clone();
-        if args.shift { problem.with_random_shift(plan.trial_seed(trial)) } else { problem }
-    };
     let ended = || progress.one_more();
-    plan.run_watched(method, of_trial, stop, &ended).map_err(|error| {
+    let trials = match problem {
+        Chosen::Function(function) if args.shift => {
+            let of_trial = |trial| function.clone().with_random_shift(plan.trial_seed(trial));
+            plan.run_watched(method, of_trial, stop, &ended)
+        }
+        Chosen::Function(function) => plan.run_watched(method, |_| function, stop, &ended),
+        Chosen::Task(task) => plan.run_watched(method, |_| task, stop, &ended),
+    };
+    trials.map_err(|error| {
         Failure::bad_input(error.to_string()).with_hint("change --population or --algorithm")
     })
 }
 
-fn compare(problem: &TestProblem, target: f64, plan: Plan, results: &[Trials]) -> Comparison {
+fn compare(problem: &dyn Known, target: f64, plan: Plan, results: &[Trials]) -> Comparison {
     let merits: Vec<_> = results.iter().map(|trials| trials.merits(target)).collect();
     let against = |i: usize| (i > 0).then(|| rank_test(&merits[0], &merits[i]));
     Comparison {
-        problem: problem.definition().name,
-        dimension: problem.optimum().len(),
+        problem: problem.name(),
+        dimension: problem.domain().dimension(),
         target,
         plan,
         version: env!("CARGO_PKG_VERSION"),
@@ -262,7 +336,7 @@ fn table(comparison: &Comparison) -> Part {
 }
 
 fn report(part: &Part, files: &[PathBuf]) -> String {
-    let mut text = format!("{}\n {}\n", Table::of(part), dim(&part.notes.concat()));
+    let mut text = format!("{}\n {}\n", Table::of(part), dim(&part.notes.join("; ")));
     for file in files {
         let _ = writeln!(text, " {} {}", dim("written"), file.display());
     }
@@ -271,7 +345,7 @@ fn report(part: &Part, files: &[PathBuf]) -> String {
 
 fn write(
     directory: &Path,
-    problem: &TestProblem,
+    problem: &dyn Known,
     comparison: &Comparison,
     results: &[Trials],
 ) -> Result<Vec<PathBuf>, Failure> {
@@ -324,11 +398,11 @@ fn trials_csv(target: f64, results: &[Trials]) -> String {
 
 /// The curves, drawn by `draw`.
 fn curves<T>(
-    problem: &TestProblem,
+    problem: &dyn Known,
     results: &[Trials],
     draw: impl Fn(Axes<'_>, &[Curve]) -> T,
 ) -> T {
-    let above = |cost: f64| cost - problem.optimal_cost();
+    let above = |cost: f64| cost - problem.smallest();
     let grid = grid(results);
     let curve = |trials: &Trials| {
         let points: Vec<_> = grid.iter().map(|evaluations| trials.after(*evaluations)).collect();
@@ -339,7 +413,7 @@ fn curves<T>(
             band: points.iter().map(|p| (at(p.evaluations), above(p.low), above(p.high))).collect(),
         }
     };
-    let title = format!("{}, median and quartiles", problem.definition().name);
+    let title = format!("{}, median and quartiles", problem.name());
     let (x, y) = ("evaluations", "cost above the smallest");
     let axes = Axes { title: &title, x, y, logarithmic: true };
     draw(axes, &results.iter().map(curve).collect::<Vec<Curve>>())

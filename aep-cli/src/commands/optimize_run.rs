@@ -5,10 +5,10 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use aep_core::{
-    Budget, Driver, Method, Outcome, Problem, Progress as Generation, RunError, Start, StopReason,
-    Trace, TraceFormat,
+    Budget, Driver, Method, Outcome, Progress as Generation, RunError, Start, StopReason, Trace,
+    TraceFormat,
 };
-use aep_problems::TestProblem;
+use aep_problems::Known;
 
 use crate::app::Global;
 use crate::failure::Failure;
@@ -45,7 +45,7 @@ impl RunArgs {
 pub fn run(
     args: &RunArgs,
     method: &dyn Method,
-    problem: &TestProblem,
+    problem: &dyn Known,
     (budget, seed): (Budget, u64),
     global: Global,
 ) -> Result<(), Failure> {
@@ -66,8 +66,8 @@ pub fn run(
         driver = driver.with_checkpoint(path, EVERY);
     }
     let outcome = match &args.resume {
-        Some(path) => driver.resume(&mut *algorithm, problem, path),
-        None => driver.run(&mut *algorithm, problem),
+        Some(path) => driver.resume(&mut *algorithm, &problem, path),
+        None => driver.run(&mut *algorithm, &problem),
     };
     let outcome = outcome.map_err(refused)?;
     drop(driver);
@@ -77,7 +77,7 @@ pub fn run(
 
 const HINT: &str = "give the problem, optimizer, population and seed that the run was started with";
 
-fn trace(path: &Path, problem: &TestProblem) -> Result<Trace<BufWriter<File>>, Failure> {
+fn trace(path: &Path, problem: &dyn Known) -> Result<Trace<BufWriter<File>>, Failure> {
     let format = match path.extension().and_then(|extension| extension.to_str()) {
         Some("csv") => TraceFormat::Csv,
         Some("jsonl") => TraceFormat::JsonLines,
@@ -95,10 +95,10 @@ fn trace(path: &Path, problem: &TestProblem) -> Result<Trace<BufWriter<File>>, F
 fn finish(
     outcome: &Outcome,
     method: &str,
-    problem: &TestProblem,
+    problem: &dyn Known,
     global: Global,
 ) -> Result<(), Failure> {
-    let name = problem.definition().name;
+    let name = problem.name();
     let text = format!(
         "{} cost {:e} at {:?}\n {}\n",
         heading(&format!("{method} on {name}")),

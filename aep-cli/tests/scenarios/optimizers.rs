@@ -36,7 +36,7 @@ fn a_comparison_can_be_repeated_whatever_the_number_of_threads() {
 #[test]
 fn unknown_names_are_refused_with_those_there_are() {
     let desk = Desk::new();
-    desk.aep("optimize f9").refused(&["no test function 'f9'", "hint: there are: f1,"]);
+    desk.aep("optimize f9").refused(&["no test function or task 'f9'", "hint: there are: f1,"]);
     desk.aep("optimize f1 --algorithm ga").refused(&["no optimizer 'ga'", "cma-es"]);
     desk.aep("optimize f5 --dimension 7").refused(&["defined for 2 components", "--dimension"]);
     desk.aep("optimize f1 --algorithm de --population 2").refused(&["four individuals"]);
@@ -48,6 +48,27 @@ fn test_functions_are_listed_and_told_one_by_one() {
     let desk = Desk::new();
     assert!(desk.aep("problems").done().contains("rastrigin"));
     assert!(desk.aep("problems f5").done().contains("0.998"));
+}
+
+#[test]
+fn identification_tasks_are_listed_told_and_solved_by_the_recommended_method() {
+    let desk = Desk::new();
+    assert!(desk.aep("problems").done().contains("two-mass"));
+    let run = desk.aep("problems two-mass");
+    assert!(run.done().contains("backlash") && run.done().contains("kg m^2"));
+    let line = "optimize failing-rod --algorithm auto,de --trials 4 --evaluations 8000";
+    let run = desk.aep(&format!("{line} --json out.json"));
+    assert!(run.done().contains("auto: ") && run.done().contains("residuals"));
+    let json = desk.json("out.json");
+    let auto = json["summaries"][0]["method"].as_str().unwrap();
+    assert!(run.done().contains(&format!("auto: {auto},")));
+    assert_eq!(json["summaries"][0]["successes"], 4);
+    // Half of the domain fails, and that is counted.
+    assert!(json["summaries"][1]["failures"].as_u64().unwrap() > 10);
+    for flag in ["--dimension 3", "--shift", "--noise"] {
+        desk.aep(&format!("optimize failing-rod {flag}"))
+            .refused(&["as it was recorded", "leave --"]);
+    }
 }
 
 #[test]

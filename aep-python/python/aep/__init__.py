@@ -14,6 +14,7 @@ from ._fleet import Fleet, discover_many
 from ._minimize import minimize
 from ._optimizer import Optimizer
 from ._result import Interrupted, Result, WorkersLost
+from ._tasks import Task, tasks
 from ._trials import Trials, trials
 
 
@@ -33,6 +34,7 @@ __all__ = [
     "Optimizer",
     "OwnFound",
     "Result",
+    "Task",
     "Term",
     "Trials",
     "WorkersLost",
@@ -50,5 +52,6 @@ __all__ = [
     "minimize",
     "simulate",
     "suggest",
+    "tasks",
     "trials",
 ]

@@ -1,0 +1,139 @@
+//! Which method to take.
+
+use super::{Named, find};
+
+/// What is known of a task before anything has been evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Facts {
+    /// Number of components.
+    pub dimension: usize,
+    /// Whether the same position can have another cost, or neighbours' costs differ by chance.
+    pub noisy: bool,
+    /// Whether the cost is a sum of squared residuals that the task gives ([`crate::LeastSquares`]).
+    pub residuals: bool,
+    /// Evaluations that run at the same time.
+    pub width: usize,
+}
+
+impl Facts {
+    /// A task of so many components: without noise, nothing known but the cost, one evaluation at a time.
+    pub fn new(dimension: usize) -> Self {
+        Self { dimension, noisy: false, residuals: false, width: 1 }
+    }
+
+    /// The same with a cost that is, or is not, subject to chance.
+    #[must_use]
+    pub fn with_noise(self, noisy: bool) -> Self {
+        Self { noisy, ..self }
+    }
+
+    /// The same with residuals.
+    #[must_use]
+    pub fn with_residuals(self) -> Self {
+        Self { residuals: true, ..self }
+    }
+
+    /// The same with `width` evaluations at the same time.
+    #[must_use]
+    pub fn with_width(self, width: usize) -> Self {
+        Self { width, ..self }
+    }
+}
+
+/// What to run.
+#[derive(Clone, Copy)]
+pub struct Advice {
+    /// The method, for a cost of which nothing else is told.
+    pub method: &'static Named,
+    /// Its population; 0 for its own default.
+    pub population: usize,
+    /// Whether to begin with [`crate::polish`] from random places, one after the other: where a task gives
+    /// its residuals, that needed fewer evaluations than any search.
+    pub polish: bool,
+    /// Why this method, in one line.
+    pub why: &'static str,
+}
+
+/// A method and where it is the one to take.
+struct Rule {
+    /// By the facts, and the evaluations per component.
+    holds: fn(&Facts, u64) -> bool,
+    method: &'static str,
+    why: &'static str,
+}
+
+/// The first one that holds decides; the last one always does. What they are worth:
+/// docs/optimizers.md, "Tasks and peers".
+const RULES: &[Rule] = &[
+    Rule {
+        holds: |facts, budget| facts.dimension <= 5 && budget >= 5_000,
+        method: "de",
+        why: "few parameters and many evaluations: it misses the fewest best minima",
+    },
+    Rule { holds: |_, _| true, method: "cma-es", why: "needs the fewest evaluations on most fits" },
+];
+
+/// The method to take for a task, with `evaluations` to spend; 0 where that is not known.
+///
+/// ```
+/// use aep_core::methods::{Facts, recommend};
+/// let advice = recommend(&Facts::new(7).with_residuals().with_width(64), 20_000);
+/// assert!(advice.polish && advice.population == 64);
+/// println!("{}: {}", advice.method.name, advice.why);
+/// ```
+pub fn recommend(facts: &Facts, evaluations: u64) -> Advice {
+    let per_component = match evaluations {
+        0 => u64::MAX,
+        evaluations => evaluations / facts.dimension.max(1) as u64,
+    };
+    let (rule, method) = RULES
+        .iter()
+        .filter(|rule| (rule.holds)(facts, per_component))
+        .find_map(|rule| Some((rule, find(rule.method)?)))
+        .expect("the last rule holds always and names a method");
+    // A generation narrower than what runs at once leaves machines idle.
+    let population = if facts.width > USUAL { facts.width } else { 0 };
+    Advice { method, population, polish: facts.residuals, why: rule.why }
+}
+
+/// About what the methods have as their own population.
+const USUAL: usize = 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rule_names_a_method_and_the_last_one_holds_always() {
+        assert!(RULES.iter().all(|rule| find(rule.method).is_some()));
+        let last = &RULES[RULES.len() - 1];
+        for dimension in [1, 5, 30, 1_000] {
+            for facts in [Facts::new(dimension), Facts::new(dimension).with_noise(true)] {
+                assert!(
+                    [0, 10, 1_000, u64::MAX].iter().all(|budget| (last.holds)(&facts, *budget))
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn residuals_ask_for_descents() {
+        assert!(!recommend(&Facts::new(5), 1_000).polish);
+        assert!(recommend(&Facts::new(5).with_residuals().with_noise(true), 1_000).polish);
+    }
+
+    #[test]
+    fn many_evaluations_a_component_are_for_the_method_that_misses_least() {
+        let advised =
+            |dimension, evaluations| recommend(&Facts::new(dimension), evaluations).method.name;
+        assert_eq!(advised(5, 50_000), "de");
+        assert_eq!(advised(5, 5_000), "cma-es");
+        assert_eq!(advised(20, 1_000_000), "cma-es");
+    }
+
+    #[test]
+    fn a_wide_machine_is_filled() {
+        assert_eq!(recommend(&Facts::new(5), 1_000).population, 0);
+        assert_eq!(recommend(&Facts::new(5).with_width(256), 1_000).population, 256);
+    }
+}
