@@ -112,6 +112,7 @@ mod engine;
 mod error;
 mod evaluate;
 mod least_squares;
+mod lineages;
 mod meta_ep;
 pub mod methods;
 mod mutation;
@@ -149,6 +150,7 @@ pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
 pub use least_squares::{
     FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, polish,
 };
+pub use lineages::{Ingredient, Lineages};
 pub use meta_ep::{
     CommonRate, LearningRate, MetaEp, MetaEpMutation, SigmaUnit, StepSizes, UpdateOrder,
 };
