@@ -13,7 +13,7 @@ const BELIEVED: f64 = 0.8;
 /// Entries that a belief is founded on, at least.
 const FOUNDED: usize = 15;
 /// Fits that a run has at the start, per component, ...
-const FIRST_FITS: f64 = 60.0;
+const FIRST_FITS: f64 = 200.0;
 /// ... and what each evaluation adds.
 const FITS_PER_EVALUATION: f64 = 0.02;
 

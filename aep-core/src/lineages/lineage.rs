@@ -101,13 +101,6 @@ impl Lineage {
         self.ended
     }
 
-    /// Takes over what was evaluated before the lineage began.
-    pub fn note(&mut self, position: &[f64], cost: f64) {
-        if let Some(guess) = &mut self.guess {
-            guess.note(position, cost);
-        }
-    }
-
     /// The positions to be evaluated next, not yet mirrored into the domain.
     pub fn ask(&mut self, setting: Setting<'_>, ration: &mut Ration, points: &mut Vec<f64>) {
         let open = match self.open.take() {

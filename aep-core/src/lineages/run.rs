@@ -118,8 +118,7 @@ impl<T: Scalar> Run<T> {
         order.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
         let row = |i: usize| &self.initial[i * n..(i + 1) * n];
         let (best, second) = (order[0], order[1]);
-        let mut lineage = self.first_lineage(row(best).to_vec());
-        (0..costs.len()).for_each(|i| lineage.note(row(i), costs[i]));
+        let lineage = self.first_lineage(row(best).to_vec());
         if !self.config.uses(Ingredient::Components) || !costs[second].is_finite() {
             return Phase::Lineage(lineage);
         }
