@@ -44,4 +44,18 @@ impl Ingredient {
         Self::LargeLineages,
         Self::Populations,
     ];
+    /// Its name, for tables and command lines.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Direction => "direction",
+            Self::Age => "age",
+            Self::Contest => "contest",
+            Self::NegativeWeights => "negative-weights",
+            Self::Model => "model",
+            Self::Components => "components",
+            Self::SmallLineages => "small-lineages",
+            Self::LargeLineages => "large-lineages",
+            Self::Populations => "populations",
+        }
+    }
 }

@@ -77,7 +77,7 @@ impl<T: Scalar> Run<T> {
             state: State {
                 told: 0,
                 phase: Phase::Initial,
-                schedule: Schedule::new(lambda),
+                schedule: Schedule::new(n, lambda),
                 ration: Ration::new(n),
                 best: BestSoFar::new(n),
             },

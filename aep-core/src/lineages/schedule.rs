@@ -7,6 +7,9 @@ use crate::random::{self, Stream};
 
 /// Individuals of the first population; doubled with each.
 const FIRST_POPULATION: usize = 40;
+/// Evaluations per component that populations are taken to have spent at the start: one of them needs about as
+/// many before it gets anywhere, so that the lineages come first.
+const FIRST_CHARGE: u64 = 2_000;
 /// By how much each large lineage is larger than the one before.
 const GROWTH: usize = 3;
 /// Most children or individuals.
@@ -38,7 +41,7 @@ pub(super) enum Next {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Schedule {
     present: Regime,
-    /// Evaluations of the large, the small lineages and the populations.
+    /// Evaluations charged to the large, the small lineages and the populations.
     spent: [u64; 3],
     /// Children of the last large lineage, and its evaluations.
     large: (usize, u64),
@@ -49,11 +52,11 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
-    /// Before the first lineage, of `lambda` children.
-    pub fn new(lambda: usize) -> Self {
+    /// Before the first lineage, of `lambda` children in `dimension` components.
+    pub fn new(dimension: usize, lambda: usize) -> Self {
         Self {
             present: Regime::First,
-            spent: [0; 3],
+            spent: [0, 0, FIRST_CHARGE * dimension as u64],
             large: (lambda, 0),
             population: FIRST_POPULATION,
             limit: u64::MAX,
@@ -118,7 +121,7 @@ mod tests {
     #[test]
     fn regimes_share_the_evaluations_by_their_parts() {
         let config = Lineages::default();
-        let mut schedule = Schedule::new(8);
+        let mut schedule = Schedule::new(2, 8);
         let mut spent = 500;
         let mut large = Vec::new();
         for run in 0..2_000 {
@@ -144,7 +147,7 @@ mod tests {
             .without(Ingredient::LargeLineages)
             .without(Ingredient::Populations)
             .without(Ingredient::SmallLineages);
-        let mut schedule = Schedule::new(8);
+        let mut schedule = Schedule::new(2, 8);
         for run in 0..50 {
             let mut rng = Streams::new(1, Purpose::Restart, run).stream(0);
             let next = schedule.next(&config, 8, 100, &mut rng);
