@@ -12,13 +12,16 @@ const MOST_COMPONENTS: usize = 20;
 const BELIEVED: f64 = 0.8;
 /// Entries that a belief is founded on, at least.
 const FOUNDED: usize = 15;
-/// Fits that a run has at the start, per component, ...
-const FIRST_FITS: f64 = 200.0;
+/// A model of this many coefficients more waits for another entry before it is fitted again.
+const COEFFICIENTS_PER_ENTRY: u64 = 22;
+/// Evaluations with a model that a run has at the start, per component, ...
+const FIRST_RATION: f64 = 200.0;
 /// ... and what each evaluation adds.
-const FITS_PER_EVALUATION: f64 = 0.02;
+const EARNED: f64 = 0.02;
 
-/// The fits that a run still has. A fit takes far longer than drawing a child: without a limit it would be
-/// what a run on a cheap cost spends its time on, long after the model has stopped to pay.
+/// The evaluations that a run still may accompany with fits. A fit takes far longer than drawing a child:
+/// without a limit it would be what a run on a cheap cost spends its time on, long after the model has ceased to
+/// pay.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Ration {
     left: f64,
@@ -26,16 +29,16 @@ pub(super) struct Ration {
 
 impl Ration {
     pub fn new(dimension: usize) -> Self {
-        Self { left: FIRST_FITS * dimension as f64 }
+        Self { left: FIRST_RATION * dimension as f64 }
     }
 
     pub fn earn(&mut self, evaluations: usize) {
-        self.left += FITS_PER_EVALUATION * evaluations as f64;
+        self.left += EARNED * evaluations as f64;
     }
 
-    fn take(&mut self) -> bool {
-        let enough = self.left >= 1.0;
-        self.left -= if enough { 1.0 } else { 0.0 };
+    fn take(&mut self, evaluations: f64) -> bool {
+        let enough = self.left >= evaluations;
+        self.left -= if enough { evaluations } else { 0.0 };
         enough
     }
 }
@@ -61,10 +64,12 @@ impl Guess {
 
     /// The model of all that was noted; none where there is too little, or the ration is used up.
     pub fn model(&mut self, frame: &Distribution, ration: &mut Ration) -> Option<&Model> {
-        if self.fitted != self.archive.noted() {
+        let pause = 1 + coefficients(frame.dimension()) as u64 / COEFFICIENTS_PER_ENTRY;
+        let new = self.archive.noted() - self.fitted;
+        if new >= pause || new > 0 && self.model.is_none() {
             self.fitted = self.archive.noted();
             let latest = || self.archive.latest(entries(frame.dimension()));
-            self.model = if ration.take() { Model::fit(frame, latest()) } else { None };
+            self.model = if ration.take(pause as f64) { Model::fit(frame, latest()) } else { None };
         }
         self.model.as_ref()
     }

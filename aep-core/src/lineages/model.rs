@@ -34,9 +34,8 @@ impl Terms {
         }
     }
 
-    /// 1, all `v_i`, all `v_i^2`, all `v_i v_j` with j < i.
+    /// Appends 1, all `v_i`, all `v_i^2`, all `v_i v_j` with j < i.
     fn write(self, v: &[f64], row: &mut Vec<f64>) {
-        row.clear();
         row.push(1.0);
         row.extend_from_slice(v);
         if self != Self::Linear {
@@ -89,15 +88,26 @@ impl Model {
             return None;
         }
         let (mut gram, mut moment) = (Lower::zeros(m), vec![0.0; m]);
-        let (mut v, mut row) = (vec![0.0; n], Vec::with_capacity(m));
+        let mut v = vec![0.0; n];
+        let (mut rows, mut weights) = (Vec::with_capacity(4 * m), Vec::with_capacity(4));
         for (rank, (position, cost)) in entries.iter().enumerate() {
             place(frame, position, &mut v);
             let worse = rank as f64 / (entries.len() - 1) as f64;
             let far = 1.0 + triangular::dot(&v, &v) / NEAR;
             let weight = (BEST_WEIGHT + (1.0 - BEST_WEIGHT) * worse) / (far * far);
-            terms.write(&v, &mut row);
-            gram.add_square(&row, weight);
-            triangular::add_scaled(&mut moment, &row, weight * (cost - low) / (high - low));
+            terms.write(&v, &mut rows);
+            weights.push(weight);
+            let row = &rows[rows.len() - m..];
+            triangular::add_scaled(&mut moment, row, weight * (cost - low) / (high - low));
+            if weights.len() == 4 {
+                let row = |k: usize| &rows[k * m..(k + 1) * m];
+                gram.add_four_squares([0, 1, 2, 3].map(row), [0, 1, 2, 3].map(|k| weights[k]));
+                rows.clear();
+                weights.clear();
+            }
+        }
+        for (row, weight) in rows.chunks_exact(m).zip(&weights) {
+            gram.add_square(row, *weight);
         }
         gram.raise_diagonal(RIDGE);
         let factor = gram.factored()?;

@@ -61,6 +61,20 @@ fn add_square(entries: &mut [f64], v: &[f64], factor: f64) {
     }
 }
 
+#[multiversion(targets("x86_64+avx2"))]
+fn add_four_squares(entries: &mut [f64], v: [&[f64]; 4], factors: [f64; 4]) {
+    let mut rest = entries;
+    for row in 0..v[0].len() {
+        let (own, below) = rest.split_at_mut(row + 1);
+        let [a, b, c, d] = v.map(|v| &v[..=row]);
+        let f: [f64; 4] = std::array::from_fn(|k| factors[k] * v[k][row]);
+        for (column, own) in own.iter_mut().enumerate() {
+            *own += (f[0] * a[column] + f[1] * b[column]) + (f[2] * c[column] + f[3] * d[column]);
+        }
+        rest = below;
+    }
+}
+
 /// Cholesky's factor in place; whether there is one.
 #[multiversion(targets("x86_64+avx2"))]
 fn factor(entries: &mut [f64], n: usize) -> bool {
@@ -123,6 +137,11 @@ impl Lower {
     /// Adds `factor v v'`.
     pub fn add_square(&mut self, v: &[f64], factor: f64) {
         add_square(&mut self.entries, v, factor);
+    }
+
+    /// Adds `factor v v'` of four vectors, in one pass over the entries.
+    pub fn add_four_squares(&mut self, v: [&[f64]; 4], factors: [f64; 4]) {
+        add_four_squares(&mut self.entries, v, factors);
     }
 
     /// A with A A' = this, if there is one that can be computed with.
