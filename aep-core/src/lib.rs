@@ -31,6 +31,7 @@
 //! | method | for |
 //! |---|---|
 //! | [`Aep::practical`] | real tasks: any smallest cost, parameters that differ in magnitude |
+//! | [`Lineages`] | costs that take time: few evaluations, on one minimum or on many |
 //! | [`Aep::paper`] | the paper's rules, for costs whose smallest value is 0 |
 //! | [`Restarting`] | any of them again and again where runs get stuck in local minima |
 //! | [`MetaEp::paper`], [`MetaEp::practical`] | the paper's yardstick |
