@@ -31,6 +31,7 @@
 //! | method | for |
 //! |---|---|
 //! | [`Aep::practical`] | real tasks: any smallest cost, parameters that differ in magnitude |
+//! | [`Lineages`] | costs that take time: few evaluations, on one minimum or on many |
 //! | [`Aep::paper`] | the paper's rules, for costs whose smallest value is 0 |
 //! | [`Restarting`] | any of them again and again where runs get stuck in local minima |
 //! | [`MetaEp::paper`], [`MetaEp::practical`] | the paper's yardstick |
@@ -112,6 +113,7 @@ mod engine;
 mod error;
 mod evaluate;
 mod least_squares;
+mod lineages;
 mod meta_ep;
 pub mod methods;
 mod mutation;
@@ -149,6 +151,7 @@ pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
 pub use least_squares::{
     FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, polish,
 };
+pub use lineages::{Ingredient, Lineages};
 pub use meta_ep::{
     CommonRate, LearningRate, MetaEp, MetaEpMutation, SigmaUnit, StepSizes, UpdateOrder,
 };

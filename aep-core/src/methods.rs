@@ -4,7 +4,7 @@ mod recommend;
 
 pub use recommend::{Advice, Facts, recommend};
 
-use crate::{Aep, CmaEs, De, MetaEp, Method, Restarting};
+use crate::{Aep, CmaEs, De, Lineages, MetaEp, Method, Restarting};
 
 /// A method that can be asked for by name.
 #[derive(Clone, Copy)]
@@ -33,6 +33,11 @@ pub const ALL: &[Named] = &[
         name: "aep-practical-restarts",
         summary: "aep-practical, restarted with twice the population whenever it is stuck",
         build: restarting,
+    },
+    Named {
+        name: "aep-lineages",
+        summary: "AEP of lineages: few evaluations, on one minimum or on many",
+        build: |count| sized(count, Lineages::default(), Lineages::with_population),
     },
     Named {
         name: "meta-ep",

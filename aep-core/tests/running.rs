@@ -4,8 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use aep_core::{
     Aep, Algorithm, Budget, CheckpointError, CmaEs, De, Domain, Driver, Failures, FallibleProblem,
-    FnProblem, MetaEp, Method, Outcome, Problem, Progress, RunError, Scale, Start, StopReason,
-    minimize,
+    FnProblem, Lineages, MetaEp, Method, Outcome, Problem, Progress, RunError, Scale, Start,
+    StopReason, minimize,
 };
 
 fn rosenbrock() -> impl Problem {
@@ -39,6 +39,7 @@ fn methods() -> Vec<Box<dyn Method>> {
         Box::new(De::default()),
         Box::new(CmaEs::default()),
         (aep_core::methods::find("aep-practical-restarts").unwrap().build)(20),
+        Box::new(Lineages::default()),
     ]
 }
 
@@ -64,7 +65,7 @@ fn any_number_of_threads_gives_the_same_bits() {
             without_time(driver.run(&mut *start(&*method, &problem), &problem).unwrap())
         };
         let serial = run(0);
-        for threads in [1, 2, 5] {
+        for threads in [1, 2, 7] {
             assert_eq!(run(threads), serial, "{} with {threads} threads", method.name());
         }
     }
@@ -315,6 +316,8 @@ fn settings_that_cannot_work_are_refused_with_a_hint() {
         Box::new(De::default().with_fixed(0.5, 1.5)),
         Box::new(CmaEs::default().with_population(2)),
         Box::new(CmaEs::default().with_sigma(f64::INFINITY)),
+        Box::new(Lineages::default().with_population(3)),
+        Box::new(Lineages::default().with_sigma(0.0)),
     ];
     for method in bad {
         let Err(error) = method.start(&Start::new(problem.domain(), 1)) else {

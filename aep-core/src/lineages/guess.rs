@@ -1,0 +1,119 @@
+//! What a model of the cost is trusted with.
+
+use serde::{Deserialize, Serialize};
+
+use super::archive::Archive;
+use super::distribution::Distribution;
+use super::model::{Model, coefficients};
+
+/// Components beyond which a model costs more time than most evaluations.
+const MOST_COMPONENTS: usize = 20;
+/// Kendall's rank correlation with evaluated costs from which on a model is believed.
+const BELIEVED: f64 = 0.8;
+/// Entries that a belief is founded on, at least.
+const FOUNDED: usize = 15;
+/// A model of this many coefficients more waits for another entry before it is fitted again.
+const COEFFICIENTS_PER_ENTRY: u64 = 22;
+/// Evaluations with a model that a run has at the start, per component, ...
+const FIRST_RATION: f64 = 200.0;
+/// ... and what each evaluation adds.
+const EARNED: f64 = 0.02;
+
+/// The evaluations that a run still may accompany with fits. A fit takes far longer than drawing a child:
+/// without a limit it would be what a run on a cheap cost spends its time on, long after the model has ceased to
+/// pay.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Ration {
+    left: f64,
+}
+
+impl Ration {
+    pub fn new(dimension: usize) -> Self {
+        Self { left: FIRST_RATION * dimension as f64 }
+    }
+
+    pub fn earn(&mut self, evaluations: usize) {
+        self.left += EARNED * evaluations as f64;
+    }
+
+    fn take(&mut self, evaluations: f64) -> bool {
+        let enough = self.left >= evaluations;
+        self.left -= if enough { evaluations } else { 0.0 };
+        enough
+    }
+}
+
+/// The archive of a lineage and the model fitted to it.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Guess {
+    archive: Archive,
+    model: Option<Model>,
+    /// Entries noted when the model was fitted.
+    fitted: u64,
+}
+
+impl Guess {
+    /// Whether a model pays in lineages of `lambda` children.
+    pub fn pays(dimension: usize, lambda: usize) -> bool {
+        dimension <= MOST_COMPONENTS && lambda < 4 * dimension
+    }
+
+    pub fn note(&mut self, position: &[f64], cost: f64) {
+        self.archive.note(position, cost, entries(position.len()));
+    }
+
+    /// The model of all that was noted; none where there is too little, or the ration is used up.
+    pub fn model(&mut self, frame: &Distribution, ration: &mut Ration) -> Option<&Model> {
+        let pause = 1 + coefficients(frame.dimension()) as u64 / COEFFICIENTS_PER_ENTRY;
+        let new = self.archive.noted() - self.fitted;
+        if new >= pause || new > 0 && self.model.is_none() {
+            self.fitted = self.archive.noted();
+            let latest = || self.archive.latest(entries(frame.dimension()));
+            self.model = if ration.take(pause as f64) { Model::fit(frame, latest()) } else { None };
+        }
+        self.model.as_ref()
+    }
+
+    /// Whether the model ranks what was evaluated last as it is, `evaluated` of them in this generation
+    /// of `lambda`.
+    pub fn is_believed(&self, evaluated: usize, lambda: usize) -> bool {
+        let recent = (1.2 * evaluated as f64).min(0.75 * lambda as f64) as usize;
+        let latest = || self.archive.latest(recent.max(FOUNDED));
+        let costs: Vec<f64> = latest().map(|(_, cost)| cost).collect();
+        self.model.as_ref().is_some_and(|model| {
+            let values: Vec<f64> = latest().map(|(position, _)| model.value(position)).collect();
+            kendall(&costs, &values) >= BELIEVED
+        })
+    }
+}
+
+/// Entries that are kept for a fit.
+fn entries(n: usize) -> usize {
+    3 * coefficients(n)
+}
+
+/// Kendall's rank correlation of two rows of numbers.
+fn kendall(a: &[f64], b: &[f64]) -> f64 {
+    let (mut balance, mut pairs) = (0.0, 0.0);
+    for i in 0..a.len() {
+        for j in 0..i {
+            let product = (a[i] - a[j]) * (b[i] - b[j]);
+            balance += f64::from(i8::from(product > 0.0) - i8::from(product < 0.0));
+            pairs += 1.0;
+        }
+    }
+    if pairs > 0.0 { balance / pairs } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kendall_counts_agreeing_pairs() {
+        assert_eq!(kendall(&[1.0, 2.0, 3.0], &[10.0, 20.0, 30.0]), 1.0);
+        assert_eq!(kendall(&[1.0, 2.0, 3.0], &[3.0, 2.0, 1.0]), -1.0);
+        assert!((kendall(&[1.0, 2.0, 3.0], &[1.0, 3.0, 2.0]) - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!(kendall(&[1.0], &[1.0]), 0.0);
+    }
+}

@@ -1,0 +1,281 @@
+//! The run: phases one after the other on the unit cube.
+
+use serde::{Deserialize, Serialize};
+
+use super::companions::Companions;
+use super::components::ComponentSearch;
+use super::exchange::{Exchange, Verdict};
+use super::guess::Ration;
+use super::lineage::{Lineage, Setting};
+use super::schedule::{Next, Schedule};
+use super::{Ingredient, Lineages, NAME};
+use crate::best::BestSoFar;
+use crate::random::{self, Purpose, Streams};
+use crate::turn::Turn;
+use crate::{
+    Algorithm, Batch, Best, Border, CheckpointError, ConfigError, Domain, Points, Scalar, Start,
+    TellError, checkpoint,
+};
+
+pub(super) struct Run<T: Scalar> {
+    signature: String,
+    config: Lineages,
+    domain: Domain<T>,
+    seed: u64,
+    /// The initial population on the unit cube.
+    initial: Vec<f64>,
+    /// What is asked, on the unit cube, before mirroring.
+    drawn: Vec<f64>,
+    /// The same in problem coordinates.
+    points: Points<T>,
+    /// Middle, lower and upper limits of the unit cube.
+    cube: [Vec<f64>; 3],
+    turn: Turn,
+    exhausted: Option<String>,
+    state: State<T>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "")]
+struct State<T: Scalar> {
+    /// How often costs were told.
+    told: u64,
+    phase: Phase,
+    schedule: Schedule,
+    ration: Ration,
+    best: BestSoFar<T>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum Phase {
+    Initial,
+    /// The first lineage waits for the verdict.
+    Exchange(Exchange, Box<Lineage>),
+    Components(ComponentSearch),
+    Lineage(Box<Lineage>),
+    Population(Box<Companions>),
+}
+
+impl<T: Scalar> Run<T> {
+    pub fn new(config: &Lineages, start: &Start<'_, T>) -> Result<Self, ConfigError> {
+        let n = start.domain.dimension();
+        let lambda = config.lambda(n);
+        let signature = crate::engine::signature(NAME, start.domain, start.seed, lambda);
+        let first = start.population(lambda)?;
+        let initial = (0..lambda).flat_map(|i| share(start.domain, first.row(i))).collect();
+        Ok(Self {
+            signature: format!("{signature}, {config:?}"),
+            config: config.clone(),
+            domain: start.domain.clone(),
+            seed: start.seed,
+            initial,
+            drawn: Vec::new(),
+            points: Points::zeros(0, n),
+            cube: [0.5, 0.0, 1.0].map(|place| vec![place; n]),
+            turn: Turn::default(),
+            exhausted: None,
+            state: State {
+                told: 0,
+                phase: Phase::Initial,
+                schedule: Schedule::new(n, lambda),
+                ration: Ration::new(n),
+                best: BestSoFar::new(n),
+            },
+        })
+    }
+
+    /// Writes what was drawn to `points`, mirrored into the domain.
+    fn place(&mut self) {
+        let n = self.domain.dimension();
+        if self.points.len() != self.drawn.len() / n {
+            self.points = Points::zeros(self.drawn.len() / n, n);
+        }
+        let [middle, lower, upper] = &self.cube;
+        let (mut inside, mut search) = (vec![0.0; n], vec![T::zero(); n]);
+        for (i, drawn) in self.drawn.chunks_exact(n).enumerate() {
+            inside.copy_from_slice(drawn);
+            Border::Reflect.settle(&mut inside, middle, (lower, upper), |_| 0.5);
+            let limits = self.domain.search_lower().iter().zip(self.domain.search_upper());
+            for ((search, share), (lo, hi)) in search.iter_mut().zip(&inside).zip(limits) {
+                *search = (*lo + (*hi - *lo) * T::of(*share)).max(*lo).min(*hi);
+            }
+            self.domain.decode(&search, self.points.row_mut(i));
+        }
+    }
+
+    fn lambda(&self) -> usize {
+        self.config.lambda(self.domain.dimension())
+    }
+
+    fn first_lineage(&self, mean: Vec<f64>) -> Box<Lineage> {
+        Box::new(Lineage::new(&self.config, mean, self.config.sigma, self.lambda()))
+    }
+
+    /// What follows the initial population.
+    fn begin(&self, costs: &[f64]) -> Phase {
+        let n = self.domain.dimension();
+        let mut order: Vec<usize> = (0..costs.len()).collect();
+        order.sort_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+        let row = |i: usize| &self.initial[i * n..(i + 1) * n];
+        let (best, second) = (order[0], order[1]);
+        let lineage = self.first_lineage(row(best).to_vec());
+        if !self.config.uses(Ingredient::Components) || !costs[second].is_finite() {
+            return Phase::Lineage(lineage);
+        }
+        if n == 1 {
+            return Phase::Components(ComponentSearch::new(row(best).to_vec(), costs[best]));
+        }
+        let exchange = Exchange::new([row(best), row(second)], [costs[best], costs[second]]);
+        Phase::Exchange(exchange, lineage)
+    }
+
+    /// What follows a lineage or a population that has spent so many evaluations.
+    fn begin_next(&mut self, spent: u64) -> Result<Phase, ConfigError> {
+        let n = self.domain.dimension();
+        let streams = Streams::new(self.seed, Purpose::Restart, self.state.told);
+        let mut rng = streams.stream(0);
+        let next = self.state.schedule.next(&self.config, self.lambda(), spent, &mut rng);
+        Ok(match next {
+            Next::Lineage { lambda, sigma } => {
+                let mean = (0..n).map(|_| random::uniform::<f64>(&mut rng)).collect();
+                Phase::Lineage(Box::new(Lineage::new(&self.config, mean, sigma, lambda)))
+            }
+            Next::Population { size } => {
+                let companions = Companions::new(&self.config, n, size, streams.word(1))?;
+                Phase::Population(Box::new(companions))
+            }
+        })
+    }
+
+    /// Takes costs into the present phase; the evaluations of one that has ended.
+    fn advance(&mut self, costs: &[f64]) -> Option<u64> {
+        let epsilon = T::epsilon().as_f64();
+        let setting = setting(&self.config, self.seed, &self.state);
+        let ration = &mut self.state.ration;
+        match &mut self.state.phase {
+            Phase::Initial => {
+                self.state.phase = self.begin(costs);
+                None
+            }
+            Phase::Exchange(exchange, lineage) => {
+                let next = match exchange.tell(costs, epsilon) {
+                    Verdict::Undecided => return None,
+                    Verdict::NoSum => Phase::Lineage(lineage.clone()),
+                    Verdict::Sum => {
+                        let (parent, cost) = exchange.first();
+                        Phase::Components(ComponentSearch::new(parent.to_vec(), cost))
+                    }
+                };
+                self.state.phase = next;
+                None
+            }
+            Phase::Components(search) => {
+                search.tell(costs, epsilon);
+                if search.ended() {
+                    let parent = search.parent().to_vec();
+                    self.state.phase = Phase::Lineage(self.first_lineage(parent));
+                }
+                None
+            }
+            Phase::Lineage(lineage) => {
+                lineage.tell(setting, ration, costs);
+                let spent = lineage.evaluations();
+                let over = lineage.ended() || !self.state.schedule.allows(spent);
+                over.then_some(spent)
+            }
+            Phase::Population(companions) => {
+                companions.tell(costs);
+                let spent = companions.evaluations();
+                companions.ended(&self.config, setting.lowest).then_some(spent)
+            }
+        }
+    }
+}
+
+fn setting<'a, T: Scalar>(config: &'a Lineages, seed: u64, state: &State<T>) -> Setting<'a> {
+    let lowest = state.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64());
+    Setting { config, seed, generation: state.told, lowest }
+}
+
+/// Search coordinates as shares of the domain's width.
+fn share<'a, T: Scalar>(domain: &'a Domain<T>, search: &'a [T]) -> impl Iterator<Item = f64> + 'a {
+    let limits = domain.search_lower().iter().zip(domain.search_upper());
+    search.iter().zip(limits).map(|(&u, (&lo, &hi))| ((u - lo) / (hi - lo)).as_f64())
+}
+
+impl<T: Scalar> Algorithm<T> for Run<T> {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn signature(&self) -> String {
+        self.signature.clone()
+    }
+
+    fn domain(&self) -> &Domain<T> {
+        &self.domain
+    }
+
+    fn ask(&mut self) -> Batch<'_, T> {
+        if self.turn.ask() {
+            let setting = setting(&self.config, self.seed, &self.state);
+            let (ration, drawn) = (&mut self.state.ration, &mut self.drawn);
+            drawn.clear();
+            match &mut self.state.phase {
+                Phase::Initial => drawn.extend_from_slice(&self.initial),
+                Phase::Exchange(exchange, _) => {
+                    let streams = Streams::new(self.seed, Purpose::Mutation, self.state.told);
+                    exchange.ask(&mut streams.stream(0), drawn);
+                }
+                Phase::Components(search) => search.ask(drawn),
+                Phase::Lineage(lineage) => lineage.ask(setting, ration, drawn),
+                Phase::Population(companions) => companions.ask(drawn),
+            }
+            self.place();
+        }
+        self.points.batch()
+    }
+
+    fn tell(&mut self, costs: &[T]) -> Result<(), TellError> {
+        self.turn.tell(costs.len(), self.points.len())?;
+        let points = &self.points;
+        self.state.best.note(costs, |i, x| x.copy_from_slice(points.row(i)));
+        let usable = |cost: &T| if cost.is_finite() { cost.as_f64() } else { f64::INFINITY };
+        let costs: Vec<f64> = costs.iter().map(usable).collect();
+        let ended = self.advance(&costs);
+        self.state.told += 1;
+        if let Some(spent) = ended {
+            match self.begin_next(spent) {
+                Ok(phase) => self.state.phase = phase,
+                Err(error) => self.exhausted = Some(error.to_string()),
+            }
+        }
+        Ok(())
+    }
+
+    fn best(&self) -> Option<Best<'_, T>> {
+        self.state.best.get()
+    }
+
+    fn generation(&self) -> u64 {
+        self.state.told.saturating_sub(1)
+    }
+
+    fn exhausted(&self) -> Option<&str> {
+        self.exhausted.as_deref()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CheckpointError> {
+        checkpoint::encode(&self.state)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), CheckpointError> {
+        let state: State<T> = checkpoint::decode(bytes)?;
+        if state.best.dimension() != self.domain.dimension() {
+            return Err(CheckpointError::Mismatch { what: "dimension" });
+        }
+        self.state = state;
+        self.turn = Turn::default();
+        Ok(())
+    }
+}

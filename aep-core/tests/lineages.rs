@@ -1,0 +1,95 @@
+//! What the method of lineages promises beyond what every method does.
+
+use aep_core::{
+    Algorithm, Budget, Domain, FnProblem, Ingredient, Lineages, Method, Problem, Start, StopReason,
+    minimize,
+};
+
+/// An ellipsoid of condition 1e4 along the axes of a fixed rotation, smallest cost 3.
+fn rotated(n: usize) -> impl Problem {
+    FnProblem::new(Domain::cube(n, -5.0, 5.0).unwrap(), |x: &[f64]| {
+        let n = x.len() as f64;
+        // A reflection: y = x - 2 u (u'x) with u = (1, ..., 1) / sqrt(n).
+        let mean = x.iter().map(|x| x - 1.0).sum::<f64>() / n;
+        let weigh = |(i, x): (usize, &f64)| {
+            1e4_f64.powf(i as f64 / (n - 1.0)) * (x - 1.0 - 2.0 * mean).powi(2)
+        };
+        3.0 + x.iter().enumerate().map(weigh).sum::<f64>()
+    })
+}
+
+fn valley(n: usize) -> impl Problem {
+    FnProblem::new(Domain::cube(n, -5.0, 5.0).unwrap(), |x: &[f64]| {
+        x.windows(2).map(|x| 100.0 * (x[0] * x[0] - x[1]).powi(2) + (1.0 - x[0]).powi(2)).sum()
+    })
+}
+
+/// Evaluations to the target, in each of ten seeds.
+fn evaluations(problem: &dyn Problem, method: &Lineages, target: f64) -> Vec<u64> {
+    let budget = Budget::evaluations(20_000).with_target(target);
+    let run = |seed| minimize(problem, method, budget.clone(), seed).unwrap();
+    let outcomes =
+        (1..=10).map(run).inspect(|outcome| assert_eq!(outcome.stop, StopReason::Target));
+    let mut all: Vec<u64> = outcomes.map(|outcome| outcome.evaluations).collect();
+    all.sort_unstable();
+    all
+}
+
+/// Medians of ten are about 300 and 600 with the model, 1,300 and 2,000 without; the limits are twice that.
+#[test]
+fn a_model_saves_more_than_half_of_the_evaluations_on_smooth_costs() {
+    let (whole, bare) = (Lineages::default(), Lineages::default().without(Ingredient::Model));
+    for (problem, target, most) in
+        [(&rotated(5) as &dyn Problem, 3.0 + 1e-8, 600), (&valley(5), 1e-8, 1_200)]
+    {
+        let with = evaluations(problem, &whole, target)[5];
+        let without = evaluations(problem, &bare, target)[5];
+        assert!(with < most && 2 * with < without && without < 4_000, "{with} {without}");
+    }
+}
+
+#[test]
+fn a_sum_over_components_with_many_minima_is_solved_component_by_component() {
+    let domain = Domain::cube(8, -5.0, 5.0).unwrap();
+    let dents = FnProblem::new(domain, |x: &[f64]| {
+        let dent = |x: f64| 10.0 + x * x - 10.0 * (std::f64::consts::TAU * x).cos();
+        x.iter().map(|x| dent(x - 1.3)).sum()
+    });
+    let most = evaluations(&dents, &Lineages::default(), 1e-8)[9];
+    assert!(most < 2_000, "{most}");
+    let without = Lineages::default().without(Ingredient::Components);
+    let budget = Budget::evaluations(2_000).with_target(1e-8);
+    assert!(minimize(&dents, &without, budget, 1).unwrap().cost > 1e-8);
+}
+
+#[test]
+fn two_hundred_components_and_single_precision_work() {
+    let wide = rotated(200);
+    let outcome = minimize(&wide, &Lineages::default(), Budget::evaluations(20_000), 1).unwrap();
+    let first = minimize(&wide, &Lineages::default(), Budget::evaluations(100), 1).unwrap();
+    assert!(outcome.cost < 0.05 * first.cost, "{} {}", outcome.cost, first.cost);
+    let domain = Domain::<f32>::cube(4, -5.0, 5.0).unwrap();
+    let single = FnProblem::new(domain, |x: &[f32]| {
+        (x[0] * x[1] - 2.0).powi(2) + (x[1] - x[2]).powi(2) + (x[3] - x[0]).powi(2) + x[2].powi(2)
+    });
+    let budget = Budget::evaluations(4_000);
+    let found = minimize(&single, &Lineages::default(), budget, 1).unwrap();
+    assert!(found.position.len() == 4 && found.cost < 0.5, "{found:?}");
+}
+
+/// The state is saved between ask and tell, within a generation that is asked in parts, too.
+#[test]
+fn a_run_goes_on_from_every_one_of_its_states() {
+    let problem = rotated(3);
+    let start = Start::new(problem.domain(), 4);
+    let mut whole: Box<dyn Algorithm> = Lineages::default().start(&start).unwrap();
+    for _ in 0..150 {
+        let asked = whole.ask().as_slice().to_vec();
+        let mut again: Box<dyn Algorithm> = Lineages::default().start(&start).unwrap();
+        again.restore(&whole.save().unwrap()).unwrap();
+        assert_eq!(again.ask().as_slice(), asked);
+        let costs: Vec<f64> = asked.chunks(3).map(|x| problem.evaluate(x)).collect();
+        whole = again;
+        whole.tell(&costs).unwrap();
+    }
+}

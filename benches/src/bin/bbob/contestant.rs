@@ -1,0 +1,119 @@
+//! Who is compared.
+
+use aep_core::random::{Purpose, Streams, uniform};
+use aep_core::{Domain, Ingredient, Lineages, Method, Start, methods};
+use cmaes::restart::{RestartOptions, RestartStrategy};
+use fcmaes_core::{Cmaes, CmaesParams, Fitness};
+
+use crate::Result;
+use crate::task::Task;
+
+/// A method of ours, or a peer.
+pub struct Contestant {
+    name: String,
+    kind: Kind,
+}
+
+enum Kind {
+    Ours(Box<dyn Method>),
+    /// The crate `cmaes`: BIPOP.
+    CmaesCrate,
+    /// CMA-ES of the crate `fcmaes-core`, restarted with twice the population.
+    FcmaesCma,
+}
+
+impl Contestant {
+    pub fn named(name: &str) -> Result<Self> {
+        let kind = match name {
+            "cmaes-crate" => Kind::CmaesCrate,
+            "fcmaes-cma" => Kind::FcmaesCma,
+            _ => {
+                let named =
+                    methods::find(name).ok_or_else(|| format!("no method is called {name}"))?;
+                Kind::Ours((named.build)(0))
+            }
+        };
+        Ok(Self { name: name.into(), kind })
+    }
+
+    /// `aep-lineages`, and what it is without each of its ingredients.
+    pub fn ablation() -> Vec<Self> {
+        let ours = |name: String, method| Self { name, kind: Kind::Ours(Box::new(method)) };
+        let mut all = vec![ours("aep-lineages".into(), Lineages::default())];
+        for ingredient in Ingredient::ALL {
+            let method = Lineages::default().without(ingredient);
+            all.push(ours(format!("without {}", ingredient.name()), method));
+        }
+        all
+    }
+
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Works on `task` until it is over or nothing more is to be done.
+    pub fn solve(&self, task: &mut Task<'_>, seed: u64) -> Result<()> {
+        match &self.kind {
+            Kind::Ours(method) => ours(&**method, task, seed),
+            Kind::CmaesCrate => cmaes_crate(task, seed),
+            Kind::FcmaesCma => {
+                fcmaes_cma(task, seed);
+                Ok(())
+            }
+        }
+    }
+}
+
+fn ours(method: &dyn Method, task: &mut Task<'_>, seed: u64) -> Result<()> {
+    let (lower, upper) = task.limits();
+    let domain = Domain::new(lower, upper)?;
+    let mut optimizer = method.start(&Start::new(&domain, seed))?;
+    while !task.is_over() && optimizer.exhausted().is_none() {
+        let costs: Vec<f64> = optimizer.ask().rows().map(|x| task.evaluate(x)).collect();
+        optimizer.tell(&costs)?;
+    }
+    Ok(())
+}
+
+fn cmaes_crate(task: &mut Task<'_>, seed: u64) -> Result<()> {
+    let (lower, upper) = task.limits();
+    let strategy = RestartStrategy::BIPOP(Default::default());
+    let restarter = RestartOptions::new(lower.len(), lower[0]..=upper[0], strategy)
+        .fun_target(task.target())
+        .max_function_evals(usize::try_from(task.budget())?)
+        .seed(seed)
+        .build()
+        .map_err(|error| format!("{error:?}"))?;
+    restarter.run_with_reuse(|x: &cmaes::DVector<f64>| task.evaluate(x.as_slice()));
+    Ok(())
+}
+
+/// First steps of 0.2 of the width, as ours; from a random place, which later runs change.
+fn fcmaes_cma(task: &mut Task<'_>, seed: u64) {
+    let (lower, upper) = task.limits();
+    let n = lower.len();
+    let first = 4 + (3.0 * (n as f64).ln()) as i32;
+    for run in 0.. {
+        let mut rng = Streams::new(seed, Purpose::Restart, run).stream(0);
+        let limits = lower.iter().zip(&upper);
+        let guess: Vec<f64> =
+            limits.map(|(lo, hi)| lo + (hi - lo) * uniform::<f64>(&mut rng)).collect();
+        let parameters = CmaesParams {
+            popsize: first << run.min(12),
+            max_evaluations: task.budget(),
+            seed,
+            runid: run as i64,
+            ..CmaesParams::default()
+        };
+        let fitness = Fitness::bounded(n, 1, &lower, &upper);
+        let sigma = 0.2 * (upper[0] - lower[0]);
+        let mut search = Cmaes::new(fitness, &guess, &[sigma], &parameters);
+        while search.stop() == 0 {
+            let costs: Vec<f64> = search.ask().iter().map(|x| task.evaluate(x)).collect();
+            if task.is_over() {
+                return;
+            }
+            search.tell(&costs);
+        }
+    }
+}
