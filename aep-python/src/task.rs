@@ -30,7 +30,9 @@ impl Task {
         if found == expected {
             return Ok(points.as_array().iter().copied().collect());
         }
-        Err(bad_input(format!("a position has {found} numbers\n  give {expected}, one for each of the task's parameters")))
+        Err(bad_input(format!(
+            "a position has {found} numbers\n  give {expected}, one for each of the task's parameters"
+        )))
     }
 }
 

@@ -156,7 +156,9 @@ impl Lineage {
                 Some(minimum) if i + 1 == self.lambda => {
                     self.distribution.whiten(minimum, z);
                     let most = TRUST * (n as f64).sqrt() / triangular::norm(z);
-                    z.iter_mut().for_each(|z| *z *= most.min(1.0));
+                    for z in z.iter_mut() {
+                        *z *= most.min(1.0);
+                    }
                 }
                 _ => random::fill_normal(&mut streams.stream(i), z),
             }

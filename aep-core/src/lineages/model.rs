@@ -157,7 +157,9 @@ impl Model {
 fn place(frame: &Distribution, position: &[f64], v: &mut [f64]) {
     frame.whiten(position, v);
     let root = (v.len() as f64).sqrt();
-    v.iter_mut().for_each(|v| *v /= root);
+    for v in v.iter_mut() {
+        *v /= root;
+    }
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ fn start(row: usize) -> usize {
 
 /// The sum of products, in an order that is the same on every machine and has room for vector
 /// registers.
-#[inline(always)]
+#[inline]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a, b) = (&a[..n], &b[..n]);
@@ -40,7 +40,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `sum += factor row`.
-#[inline(always)]
+#[inline]
 pub(super) fn add_scaled(sum: &mut [f64], row: &[f64], factor: f64) {
     for (sum, value) in sum.iter_mut().zip(row) {
         *sum += factor * value;
@@ -208,7 +208,7 @@ mod tests {
     #[test]
     fn both_triangles_are_solved() {
         let factor = matrix(13).factored().unwrap();
-        let v: Vec<f64> = (0..13).map(|j| (j as f64).cos()).collect();
+        let v: Vec<f64> = (0..13).map(|j| f64::from(j).cos()).collect();
         let mut product = vec![0.0; 13];
         factor.multiply(&v, &mut product);
         factor.solve(&mut product);

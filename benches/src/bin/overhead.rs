@@ -9,7 +9,7 @@ use std::time::Instant;
 use aep_core::{
     Budget, CmaEs, Domain, Driver, FnProblem, Ingredient, Lineages, Method, Problem, Start,
 };
-use cmaes::restart::{RestartOptions, RestartStrategy};
+use cmaes::restart::{BIPOP, RestartOptions, RestartStrategy};
 use fcmaes_core::{Cmaes, CmaesParams, Fitness};
 
 const EVALUATIONS: u64 = 20_000;
@@ -29,7 +29,7 @@ fn ours(method: &dyn Method, n: usize) {
 }
 
 fn cmaes_crate(n: usize) {
-    let strategy = RestartStrategy::BIPOP(Default::default());
+    let strategy = RestartStrategy::BIPOP(BIPOP::default());
     let restarter = RestartOptions::new(n, -LIMIT..=LIMIT, strategy)
         .max_function_evals(EVALUATIONS as usize)
         .seed(1)

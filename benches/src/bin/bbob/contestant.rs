@@ -2,7 +2,7 @@
 
 use aep_core::random::{Purpose, Streams, uniform};
 use aep_core::{Domain, Ingredient, Lineages, Method, Start, methods};
-use cmaes::restart::{RestartOptions, RestartStrategy};
+use cmaes::restart::{BIPOP, RestartOptions, RestartStrategy};
 use fcmaes_core::{Cmaes, CmaesParams, Fitness};
 
 use crate::Result;
@@ -77,7 +77,7 @@ fn ours(method: &dyn Method, task: &mut Task<'_>, seed: u64) -> Result<()> {
 
 fn cmaes_crate(task: &mut Task<'_>, seed: u64) -> Result<()> {
     let (lower, upper) = task.limits();
-    let strategy = RestartStrategy::BIPOP(Default::default());
+    let strategy = RestartStrategy::BIPOP(BIPOP::default());
     let restarter = RestartOptions::new(lower.len(), lower[0]..=upper[0], strategy)
         .fun_target(task.target())
         .max_function_evals(usize::try_from(task.budget())?)

@@ -20,9 +20,8 @@ pub fn table(cases: &[Case], cells: &[Cell], per_parameter: u64) -> String {
         else {
             continue;
         };
-        let number = |number: f64, digits: usize| match number.is_finite() {
-            true => format!("{number:.digits$}"),
-            false => "-".to_owned(),
+        let number = |number: f64, digits: usize| {
+            if number.is_finite() { format!("{number:.digits$}") } else { "-".to_owned() }
         };
         let told = |method| {
             cell(cells, &case.name, method).map_or(String::new(), |told| number(told.expected(), 0))

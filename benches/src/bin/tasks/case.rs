@@ -88,7 +88,7 @@ impl Case {
         per_parameter * self.domain().dimension() as u64
     }
 
-    pub fn seed(&self, trial: usize) -> u64 {
+    pub fn seed(trial: usize) -> u64 {
         Streams::new(1, Purpose::Trial, 0).word(trial)
     }
 

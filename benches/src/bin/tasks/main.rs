@@ -35,7 +35,7 @@ use peers::Peer;
 use python::Pool;
 use result::{Cell, Group, Trial};
 
-pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// Our methods and those of others on identification tasks and test functions.
 #[derive(Parser)]
@@ -67,7 +67,7 @@ struct Args {
 }
 
 /// Who takes part.
-pub enum Contestant {
+enum Contestant {
     Ours(&'static methods::Named),
     Other(Peer),
     Python(String),
@@ -76,7 +76,7 @@ pub enum Contestant {
 }
 
 impl Contestant {
-    pub fn name(&self) -> &str {
+    fn name(&self) -> &str {
         match self {
             Self::Ours(named) => named.name,
             Self::Other(peer) => peer.name(),
@@ -141,7 +141,7 @@ fn main() -> Result<()> {
             cells.retain(|cell| cell.task != case.name || cell.method != contestant.name());
             let run = |trial: usize| {
                 contestant
-                    .run(case, case.seed(trial), case.budget(args.budget), &pool)
+                    .run(case, Case::seed(trial), case.budget(args.budget), &pool)
                     .map_err(|error| format!("{} on {}: {error}", contestant.name(), case.name))
             };
             let trials: std::result::Result<Vec<Trial>, String> =

@@ -1,7 +1,7 @@
 //! Optimizers of other crates.
 
 use cmaes::DVector;
-use cmaes::restart::{RestartOptions, RestartStrategy};
+use cmaes::restart::{BIPOP, RestartOptions, RestartStrategy};
 use fcmaes_core::{Cmaes, CmaesParams, De, DeParams, Fitness};
 
 use crate::Result;
@@ -48,7 +48,7 @@ impl Peer {
             }
             // Its restarts choose their places themselves, from the seed.
             Self::CmaesBipop => {
-                let strategy = RestartStrategy::BIPOP(Default::default());
+                let strategy = RestartStrategy::BIPOP(BIPOP::default());
                 let left = usize::try_from(tally.left())?;
                 let options =
                     RestartOptions::new(n, 0.0..=1.0, strategy).max_function_evals(left).seed(seed);

@@ -108,7 +108,7 @@ pub fn read(text: &str) -> Result<Vec<Cell>> {
         match cells.iter_mut().find(|cell| cell.task == task && cell.method == method) {
             Some(cell) => cell.trials.push(trial),
             None => {
-                cells.push(Cell { task: task.into(), method: method.into(), trials: vec![trial] })
+                cells.push(Cell { task: task.into(), method: method.into(), trials: vec![trial] });
             }
         }
     }
