@@ -1,8 +1,8 @@
 //! An identification task.
 
 use aep_core::{Batch, LeastSquares, Problem, Scale};
-use aep_problems::tasks::{self, Identification, Parameter};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
+use aep_problems::tasks::{self as suite, Identification, Parameter};
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::failure::bad_input;
@@ -20,7 +20,7 @@ pub struct Task {
 /// Every task: its name and what is identified.
 #[pyfunction]
 pub fn tasks() -> Vec<(&'static str, &'static str)> {
-    tasks::ALL.iter().map(|task| (task.name, task.subject)).collect()
+    suite::ALL.iter().map(|task| (task.name, task.subject)).collect()
 }
 
 impl Task {
@@ -40,8 +40,8 @@ impl Task {
 impl Task {
     #[new]
     fn new(name: &str) -> PyResult<Self> {
-        let task = tasks::find(name).ok_or_else(|| {
-            let known: Vec<&str> = tasks::ALL.iter().map(|task| task.name).collect();
+        let task = suite::find(name).ok_or_else(|| {
+            let known: Vec<&str> = suite::ALL.iter().map(|task| task.name).collect();
             bad_input(format!("there is no task '{name}'\n  choose one of: {}", known.join(", ")))
         })?;
         Ok(Self { problem: task.problem() })

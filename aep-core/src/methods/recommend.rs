@@ -70,7 +70,16 @@ const RULES: &[Rule] = &[
         method: "de",
         why: "few parameters and many evaluations: it misses the fewest best minima",
     },
-    Rule { holds: |_, _| true, method: "cma-es", why: "needs the fewest evaluations on most fits" },
+    Rule {
+        holds: |facts, _| facts.width > USUAL,
+        method: "cma-es",
+        why: "many evaluations at once: it asks for a whole generation",
+    },
+    Rule {
+        holds: |_, _| true,
+        method: "aep-lineages",
+        why: "needs the fewest evaluations on most fits",
+    },
 ];
 
 /// The method to take for a task, with `evaluations` to spend; 0 where that is not known.
@@ -127,13 +136,14 @@ mod tests {
         let advised =
             |dimension, evaluations| recommend(&Facts::new(dimension), evaluations).method.name;
         assert_eq!(advised(5, 50_000), "de");
-        assert_eq!(advised(5, 5_000), "cma-es");
-        assert_eq!(advised(20, 1_000_000), "cma-es");
+        assert_eq!(advised(5, 5_000), "aep-lineages");
+        assert_eq!(advised(20, 1_000_000), "aep-lineages");
     }
 
     #[test]
     fn a_wide_machine_is_filled() {
         assert_eq!(recommend(&Facts::new(5), 1_000).population, 0);
-        assert_eq!(recommend(&Facts::new(5).with_width(256), 1_000).population, 256);
+        let wide = recommend(&Facts::new(5).with_width(256), 1_000);
+        assert_eq!((wide.method.name, wide.population), ("cma-es", 256));
     }
 }
