@@ -16,9 +16,9 @@ use crate::task::Event;
 
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
 const NEAR: f64 = 1.25;
-/// Share of what an effect must gain that a candidate must promise to be fitted beside the base: there the first order
-/// errs most.
-const PROMISING: f64 = 0.15;
+/// Share of what an effect must gain that a candidate must promise to be fitted beside the base, and the most that is
+/// asked, nats: more than chance promises. There the first order errs most.
+const PROMISING: (f64, f64) = (0.15, 12.0);
 /// A search ends where chance gains as much as the best candidate this often: two effects may hide each other, but not
 /// so well.
 const HOPELESS: f64 = 0.5;
@@ -133,7 +133,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         // The first order seldom promises less than half of what a fit gains.
         let least = if size == 1 {
-            PROMISING * self.thresholds.better
+            (PROMISING.0 * self.thresholds.better).min(PROMISING.1)
         } else {
             0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
         };
