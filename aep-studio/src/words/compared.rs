@@ -142,11 +142,23 @@ pub fn why_nothing(discovery: &Discovery, rung: usize, thresholds: &Thresholds) 
         return Some("the search was stopped before anything was compared here".to_owned());
     }
     let best = discovery.ranking.get(rung)?.first()?;
-    let needed = nats(thresholds.better);
-    let needed = needed.trim_start_matches('+');
-    let gain = |gain| format!(", may gain {} nats where {needed} are needed", nats(gain));
-    let gain = best.nats.map(gain).unwrap_or_default();
+    let gain = best.nats.map(|gain| {
+        let needed = nats(thresholds.better);
+        let needed = needed.trim_start_matches('+');
+        let short = if gain > thresholds.better {
+            format!(", {}", of_all(thresholds))
+        } else {
+            format!(" where {needed} are needed")
+        };
+        format!(", may gain {} nats{short}", nats(gain))
+    });
+    let gain = gain.unwrap_or_default();
     Some(format!("nothing promised enough to be fitted; the best, {}{gain}", best.effect))
+}
+
+/// What is asked beside effects that explain much.
+fn of_all(thresholds: &Thresholds) -> String {
+    format!("less than {} of all that is explained", percent(thresholds.share))
 }
 
 /// An effect that was beside the first `rung` ones and was not needed in the end.
@@ -202,9 +214,7 @@ fn refusal(discovery: &Discovery, decision: &Decision, thresholds: &Thresholds) 
     let needed = needed.trim_start_matches('+');
     let enough = decision.difference > thresholds.better;
     match decision.outcome {
-        Outcome::TooLittle if enough => {
-            format!("{best}, less than {} of all that is explained", percent(thresholds.share))
-        }
+        Outcome::TooLittle if enough => format!("{best}, {}", of_all(thresholds)),
         Outcome::NotIdentifiable => format!("{best}, but the data do not determine it"),
         Outcome::OtherShape => format!("{best}, which another shape of an effect does, too"),
         Outcome::Rival => format!("{name}, which stands for no effect, gains {gain} nats"),
@@ -321,6 +331,12 @@ mod tests {
         assert_eq!(
             why(&[]),
             "nothing promised enough to be fitted; the best, ripple, may gain +7.3 nats where 80 are needed"
+        );
+        let small = Thresholds { better: 1.0, ..Thresholds::default() };
+        assert!(
+            why_nothing(&discovery(&["stribeck"], &[]), 1, &small)
+                .unwrap()
+                .ends_with("may gain +7.3 nats, less than 2.00 % of all that is explained")
         );
         // The rung that was reached needs no excuse.
         assert_eq!(why_nothing(&discovery(&["stribeck"], &[]), 0, &Thresholds::default()), None);
