@@ -106,6 +106,7 @@ mod budget;
 pub mod checkpoint;
 mod cma_es;
 mod constrained;
+mod cube;
 mod de;
 mod domain;
 mod driver;

@@ -7,12 +7,13 @@ use serde::{Deserialize, Serialize};
 use distribution::Distribution;
 
 use crate::best::BestSoFar;
+use crate::cube::Cube;
 use crate::random::{self, Purpose, Streams};
 use crate::restart::{Attempt, Runs};
 use crate::turn::Turn;
 use crate::{
-    Algorithm, Batch, Best, Border, CheckpointError, ConfigError, Domain, Method, Points, Scalar,
-    Start, TellError, checkpoint,
+    Algorithm, Batch, Best, CheckpointError, ConfigError, Domain, Method, Points, Scalar, Start,
+    TellError, checkpoint,
 };
 
 /// What happens when the distribution has converged.
@@ -129,6 +130,7 @@ struct Run<T: Scalar> {
     points: Points<T>,
     /// What was drawn, scaled to the domain's width, before mirroring.
     genotypes: Vec<Vec<f64>>,
+    cube: Cube,
     turn: Turn,
     state: State<T>,
 }
@@ -174,6 +176,7 @@ impl<T: Scalar> Run<T> {
             first: Points::zeros(0, dimension),
             points: Points::zeros(lambda, dimension),
             genotypes: Vec::new(),
+            cube: Cube::new(dimension),
             turn: Turn::default(),
             state: State {
                 generation: 0,
@@ -190,8 +193,7 @@ impl<T: Scalar> Run<T> {
         self.genotypes =
             (0..self.lambda).map(|i| distribution.sample(&mut streams.stream(i))).collect();
         for (i, genotype) in self.genotypes.iter().enumerate() {
-            let search = phenotype(&self.domain, genotype);
-            self.domain.decode(&search, self.points.row_mut(i));
+            self.cube.place(&self.domain, genotype, self.points.row_mut(i));
         }
     }
 
@@ -199,7 +201,7 @@ impl<T: Scalar> Run<T> {
     fn begin(&mut self, costs: &[T]) {
         let best = (0..costs.len()).reduce(|a, b| if costs[b] < costs[a] { b } else { a });
         let row = self.first.row(best.unwrap_or(0));
-        let mean = genotype(&self.domain, row);
+        let mean = Cube::shares(&self.domain, row);
         let fresh = Distribution::new(mean, self.sigma, self.lambda);
         self.state.distribution = Some(fresh);
     }
@@ -212,22 +214,6 @@ impl<T: Scalar> Run<T> {
         distribution.update(&self.genotypes, &costs);
         self.state.exhausted = distribution.converged().map(Into::into);
     }
-}
-
-/// Scaled to [0, 1] to search coordinates, mirrored into the domain.
-fn phenotype<T: Scalar>(domain: &Domain<T>, genotype: &[f64]) -> Vec<T> {
-    let n = genotype.len();
-    let mut inside = genotype.to_vec();
-    Border::Reflect.settle(&mut inside, &vec![0.5; n], (&vec![0.0; n], &vec![1.0; n]), |_| 0.5);
-    let limits = domain.search_lower().iter().zip(domain.search_upper());
-    let scale = |(g, (lo, hi)): (f64, (&T, &T))| (*lo + (*hi - *lo) * T::of(g)).max(*lo).min(*hi);
-    inside.into_iter().zip(limits).map(scale).collect()
-}
-
-/// Search coordinates scaled to [0, 1].
-fn genotype<T: Scalar>(domain: &Domain<T>, search: &[T]) -> Vec<f64> {
-    let limits = domain.search_lower().iter().zip(domain.search_upper());
-    search.iter().zip(limits).map(|(&u, (&lo, &hi))| ((u - lo) / (hi - lo)).as_f64()).collect()
 }
 
 impl<T: Scalar> Algorithm<T> for Run<T> {

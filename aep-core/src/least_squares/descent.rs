@@ -130,12 +130,11 @@ impl<'a, P: LeastSquares + ?Sized> LevenbergMarquardt<'a, P> {
         let mut costs = vec![f64::INFINITY; trials.len()];
         let points = trials.concat();
         self.problem.objective_batch(Batch::new(self.at.position.len(), &points), &mut costs);
-        let best = (0..trials.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
-        if costs[best] < self.at.cost {
-            self.at = Refined { position: trials[best].clone(), cost: costs[best] };
-            return Some(best);
-        }
-        None
+        // What is not a number is never lower, not even with the sign by which `total_cmp` puts it first.
+        let lower = (0..trials.len()).filter(|k| costs[*k] < self.at.cost);
+        let best = lower.min_by(|a, b| costs[*a].total_cmp(&costs[*b]))?;
+        self.at = Refined { position: trials[best].clone(), cost: costs[best] };
+        Some(best)
     }
 
     /// Normal matrix and moment of the residuals, in shares of the widths; none where one is not
@@ -186,5 +185,36 @@ impl<'a, P: LeastSquares + ?Sized> LevenbergMarquardt<'a, P> {
             x[*k] = self.problem.domain().shifted(*k, x[*k], change);
         }
         Some(x)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Domain;
+
+    /// (x - 3)^2; beyond 4 not a number, with the sign bit set.
+    struct Edge(Domain);
+
+    impl LeastSquares for Edge {
+        fn domain(&self) -> &Domain {
+            &self.0
+        }
+
+        fn residuals(&self, x: &[f64]) -> Vec<f64> {
+            vec![x[0] - 3.0]
+        }
+
+        fn objective(&self, x: &[f64]) -> f64 {
+            if x[0] > 4.0 { f64::NAN.copysign(-1.0) } else { (x[0] - 3.0).powi(2) }
+        }
+    }
+
+    #[test]
+    fn a_cost_that_is_not_a_number_does_not_hide_a_lower_one() {
+        let task = Edge(Domain::cube(1, 0.0, 10.0).unwrap());
+        let mut descent = LevenbergMarquardt::new(&task, &[1.0]);
+        assert_eq!(descent.take_best(&[vec![5.0], vec![2.0], vec![0.5]]), Some(1));
+        assert_eq!(descent.take_best(&[vec![5.0], vec![1.0]]), None);
     }
 }

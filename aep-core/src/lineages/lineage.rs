@@ -128,14 +128,9 @@ impl Lineage {
             waiting: (0..self.lambda).collect(),
             next: self.lambda,
         };
-        let modelled = match &mut self.guess {
-            Some(guess) => guess.model(&self.distribution, ration).is_some(),
-            None => false,
-        };
-        if modelled {
-            let model =
-                self.guess.as_mut().and_then(|guess| guess.model(&self.distribution, ration));
-            open.minimum = model.and_then(super::model::Model::minimum);
+        let guess = self.guess.as_mut();
+        if let Some(model) = guess.and_then(|guess| guess.model(&self.distribution, ration)) {
+            open.minimum = model.minimum();
             open.next = 1;
         }
         self.draw(setting.seed, drawn, open.minimum.as_deref());

@@ -10,11 +10,12 @@ use super::lineage::{Lineage, Setting};
 use super::schedule::{Next, Schedule};
 use super::{Ingredient, Lineages, NAME};
 use crate::best::BestSoFar;
+use crate::cube::Cube;
 use crate::random::{self, Purpose, Streams};
 use crate::turn::Turn;
 use crate::{
-    Algorithm, Batch, Best, Border, CheckpointError, ConfigError, Domain, Points, Scalar, Start,
-    TellError, checkpoint,
+    Algorithm, Batch, Best, CheckpointError, ConfigError, Domain, Points, Scalar, Start, TellError,
+    checkpoint,
 };
 
 pub(super) struct Run<T: Scalar> {
@@ -28,8 +29,7 @@ pub(super) struct Run<T: Scalar> {
     drawn: Vec<f64>,
     /// The same in problem coordinates.
     points: Points<T>,
-    /// Middle, lower and upper limits of the unit cube.
-    cube: [Vec<f64>; 3],
+    cube: Cube,
     turn: Turn,
     exhausted: Option<String>,
     state: State<T>,
@@ -62,7 +62,7 @@ impl<T: Scalar> Run<T> {
         let lambda = config.lambda(n);
         let signature = crate::engine::signature(NAME, start.domain, start.seed, lambda);
         let first = start.population(lambda)?;
-        let initial = (0..lambda).flat_map(|i| share(start.domain, first.row(i))).collect();
+        let initial = (0..lambda).flat_map(|i| Cube::shares(start.domain, first.row(i))).collect();
         Ok(Self {
             signature: format!("{signature}, {config:?}"),
             config: config.clone(),
@@ -71,7 +71,7 @@ impl<T: Scalar> Run<T> {
             initial,
             drawn: Vec::new(),
             points: Points::zeros(0, n),
-            cube: [0.5, 0.0, 1.0].map(|place| vec![place; n]),
+            cube: Cube::new(n),
             turn: Turn::default(),
             exhausted: None,
             state: State {
@@ -90,16 +90,8 @@ impl<T: Scalar> Run<T> {
         if self.points.len() != self.drawn.len() / n {
             self.points = Points::zeros(self.drawn.len() / n, n);
         }
-        let [middle, lower, upper] = &self.cube;
-        let (mut inside, mut search) = (vec![0.0; n], vec![T::zero(); n]);
         for (i, drawn) in self.drawn.chunks_exact(n).enumerate() {
-            inside.copy_from_slice(drawn);
-            Border::Reflect.settle(&mut inside, middle, (lower, upper), |_| 0.5);
-            let limits = self.domain.search_lower().iter().zip(self.domain.search_upper());
-            for ((search, share), (lo, hi)) in search.iter_mut().zip(&inside).zip(limits) {
-                *search = (*lo + (*hi - *lo) * T::of(*share)).max(*lo).min(*hi);
-            }
-            self.domain.decode(&search, self.points.row_mut(i));
+            self.cube.place(&self.domain, drawn, self.points.row_mut(i));
         }
     }
 
@@ -195,12 +187,6 @@ impl<T: Scalar> Run<T> {
 fn setting<'a, T: Scalar>(config: &'a Lineages, seed: u64, state: &State<T>) -> Setting<'a> {
     let lowest = state.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64());
     Setting { config, seed, generation: state.told, lowest }
-}
-
-/// Search coordinates as shares of the domain's width.
-fn share<'a, T: Scalar>(domain: &'a Domain<T>, search: &'a [T]) -> impl Iterator<Item = f64> + 'a {
-    let limits = domain.search_lower().iter().zip(domain.search_upper());
-    search.iter().zip(limits).map(|(&u, (&lo, &hi))| ((u - lo) / (hi - lo)).as_f64())
 }
 
 impl<T: Scalar> Algorithm<T> for Run<T> {

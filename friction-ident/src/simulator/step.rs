@@ -188,12 +188,9 @@ impl Plants {
     fn newton(&mut self) {
         self.scratch.displacement.fill(0.0);
         self.scratch.open.fill(1.0);
-        let mut any_open = true;
         for _ in 0..=self.iterations {
-            if !any_open {
-                break;
-            }
             self.respond_elements();
+            let mut any_open = false;
             let s = &mut self.scratch;
             newton(
                 &s.left,
@@ -206,6 +203,9 @@ impl Plants {
                 &mut s.open,
                 &mut any_open,
             );
+            if !any_open {
+                break;
+            }
         }
     }
 
