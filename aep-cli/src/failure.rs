@@ -107,6 +107,12 @@ impl From<IdentifyError> for Failure {
     }
 }
 
+impl From<serde_json::Error> for Failure {
+    fn from(error: serde_json::Error) -> Self {
+        Self::failed(format!("cannot write JSON: {error}"))
+    }
+}
+
 impl From<UnknownEffect> for Failure {
     fn from(error: UnknownEffect) -> Self {
         Self::from_lines(&error.to_string())

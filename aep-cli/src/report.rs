@@ -75,11 +75,9 @@ impl Report<'_> {
 
     /// The discovery or comparison by the contract.
     pub fn json(&self) -> Result<Value, Failure> {
-        let broken =
-            |error: serde_json::Error| Failure::failed(format!("cannot write JSON: {error}"));
         let mut json = match self.kind {
-            Kind::Discovery => aep_studio::json::json(self.discovery).map_err(broken)?,
-            Kind::Comparison => aep_studio::json::comparison(self.discovery).map_err(broken)?,
+            Kind::Discovery => aep_studio::json::json(self.discovery)?,
+            Kind::Comparison => aep_studio::json::comparison(self.discovery)?,
         };
         for (key, value) in &self.more {
             json[*key] = value.clone();
@@ -91,7 +89,7 @@ impl Report<'_> {
             time_repeated: self.loaded.left_out.repeated,
             together: &self.together,
         };
-        beside.add_to(&mut json).map_err(broken)?;
+        beside.add_to(&mut json)?;
         Ok(json)
     }
 }

@@ -8,7 +8,6 @@ use friction_ident::family::{Decides, ForeignModel, FrictionFamily, GivenModels,
 use friction_ident::simulator::free_run;
 use friction_ident::{Library, Model};
 use missing_physics::fit::{Fit, Until};
-use missing_physics::report::View;
 use missing_physics::{Discovery, Extended};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -83,10 +82,12 @@ pub fn compare(
     };
     let ((family, compared, fits), raised) = stoppable(py, work)?;
     let GivenModels { mut discovery, models, between, missing } = compared;
+    let missing = missing.iter().map(ToString::to_string);
     discovery.notes = between.iter().map(words::disagreement).chain(missing).collect();
     let fits = fits.into_iter().map(|(name, fit)| (name, fit.model)).collect();
-    let views: Vec<Vec<View>> = models.into_iter().map(|(_, views)| views).collect();
-    let views = serde_json::to_string(&views).map_err(bad_input)?;
+    let views = models.iter().map(|(_, views)| aep_studio::json::views(views));
+    let views =
+        views.collect::<serde_json::Result<serde_json::Value>>().map_err(bad_input)?.to_string();
     Ok((Found::comparison(data, family, discovery, fits, Decides::Force), views, raised))
 }
 

@@ -2,7 +2,7 @@
 
 use missing_physics::Discovery;
 use missing_physics::measurement::check::DataCheck;
-use missing_physics::report::{Combinations, Diagnosis};
+use missing_physics::report::{Combinations, Diagnosis, View};
 use serde_json::{Value, json};
 
 use crate::words;
@@ -64,12 +64,25 @@ pub fn comparison(discovery: &Discovery) -> serde_json::Result<Value> {
         "regimes": discovery.regimes,
         "noise_floor": discovery.noise_floor,
         "metrics": last.and_then(|rung| rung.metrics),
-        "views": discovery.views,
+        "views": views(&discovery.views)?,
         "diagnosis": diagnosis,
         "notes": words::notes(discovery),
         "ladder": discovery.ladder,
         "seed": discovery.seed,
     }))
+}
+
+/// Views with what they compare and why their numbers must not be taken as they are, in words.
+///
+/// # Errors
+/// As [`json()`].
+pub fn views(views: &[View]) -> serde_json::Result<Value> {
+    let mut json = serde_json::to_value(views)?;
+    for (k, view) in views.iter().enumerate() {
+        json[k]["about"] = json!(words::compares(view));
+        json[k]["warnings"] = json!(words::caveat(view).into_iter().collect::<Vec<_>>());
+    }
+    Ok(json)
 }
 
 /// What stands in the JSON beside what was found.

@@ -16,6 +16,7 @@ mod refusals;
 mod remains;
 mod remarks;
 mod summary;
+mod views;
 
 pub use axes::{AXES_HEADINGS, AxisResult, axis_row};
 pub use combinations::{combinations, not_alone};
@@ -30,6 +31,7 @@ pub use refusals::{reason, refusal};
 pub use remains::remains;
 pub use remarks::{disagreement, remark};
 pub use summary::{experiment, summary};
+pub use views::{caveat, compares};
 
 /// What is said of a search that was cut, by Ctrl-C or at the end of its time.
 pub const STOPPED: &str =

@@ -80,9 +80,9 @@ fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
     discovery.diagnosis = Some(serde_json::from_value(diagnosis).unwrap());
     let metrics = json!({"rms": 1.2, "relative": 0.03, "fit_percent": 97.1,
         "variance_accounted_for_percent": null, "points": 100});
-    let view = json!({"name": "free run", "about": "position", "unit": "m", "floor": null,
+    let view = json!({"name": "free <run>", "compares": {"kind": "free_run"}, "unit": "m", "floor": null,
         "metrics": {"fit": metrics, "validation": metrics}, "decides": false,
-        "warnings": ["the free run <has> drifted"]});
+        "caveat": {"kind": "drifted", "times": 12.0}});
     discovery.views = vec![serde_json::from_value(view).unwrap()];
     let page = page(&discovery) + &report::comparison(&discovery, &source("run.csv"), &data());
     for part in [
@@ -90,7 +90,8 @@ fn maps_with_bands_named_lines_and_views_stand_on_the_page() {
         "period 2.50 mm seen at 125 mm/s",
         "class=\"band",
         "97.10",
-        "the free run &lt;has&gt; drifted",
+        "free &lt;run&gt;<small>position, simulated from the first sample",
+        "the free run has drifted: 12 times",
     ] {
         assert!(page.contains(part), "'{part}' is not on the page");
     }

@@ -87,7 +87,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let effects = discovery.ladder[0].effects.join(" + ");
     let warnings = output::warnings(&between, &views, &missing);
     let between = between.iter().map(aep_studio::words::disagreement);
-    discovery.notes = between.chain(missing).collect();
+    discovery.notes = between.chain(missing.iter().map(ToString::to_string)).collect();
     let data = check(&loaded.recording);
     let report = Report {
         kind: Kind::Comparison,
@@ -97,7 +97,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         thresholds: Thresholds::default(),
         together: Combinations::default(),
         samples: args.results.samples(&family, std::slice::from_ref(&fit.model), Decides::Force),
-        more: vec![("models", in_json(&paths, &views))],
+        more: vec![("models", in_json(&paths, &views)?)],
     };
     let mut files = report.save(&args.results)?;
     if let Some(path) = args.series.path() {
@@ -136,10 +136,10 @@ fn name(path: &Path) -> String {
     path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned())
 }
 
-fn in_json(paths: &[PathBuf], views: &[(String, Vec<View>)]) -> serde_json::Value {
-    let models = paths
-        .iter()
-        .zip(views)
-        .map(|(path, (_, views))| serde_json::json!({ "model": path.to_string_lossy(), "views": views }));
-    models.collect()
+fn in_json(paths: &[PathBuf], views: &[(String, Vec<View>)]) -> serde_json::Result<serde_json::Value> {
+    let model = |(path, (_, of)): (&PathBuf, &(String, Vec<View>))| {
+        let views = aep_studio::json::views(of)?;
+        Ok(serde_json::json!({ "model": path.to_string_lossy(), "views": views }))
+    };
+    paths.iter().zip(views).map(model).collect()
 }

@@ -129,8 +129,7 @@ fn model(args: &Args) -> Result<Model, Failure> {
 }
 
 fn json(model: &Model, path: &Path) -> Result<String, Failure> {
-    let failed = |error: serde_json::Error| Failure::failed(error.to_string());
-    let mut value = serde_json::to_value(model).map_err(failed)?;
+    let mut value = serde_json::to_value(model)?;
     if let Some(object) = value.as_object_mut() {
         object.insert("$schema".to_owned(), SCHEMA.into());
     }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use aep_studio::words;
+use friction_ident::family::NoView;
 use missing_physics::measurement::quantity::{percent, quantity};
 use missing_physics::report::{Disagreement, View};
 
@@ -62,23 +63,24 @@ fn numbers(view: &View) -> [String; 6] {
     ]
 }
 
-/// What the user should know about the views: warnings of each, each once, and where they disagree.
+/// What the user should know about the views: what speaks against each, once, where they disagree, and which are missing.
 pub fn warnings(
     between: &[Disagreement],
     models: &[(String, Vec<View>)],
-    missing: &[String],
+    missing: &[NoView],
 ) -> String {
     let mut said: Vec<String> = between.iter().map(words::disagreement).collect();
     let mut warned: Vec<&str> = Vec::new();
     for view in models.iter().flat_map(|(_, views)| views) {
         // What holds for a view holds for it with the next model, too.
-        if view.warnings.is_empty() || warned.contains(&view.name.as_str()) {
+        let Some(text) = words::caveat(view).filter(|_| !warned.contains(&view.name.as_str()))
+        else {
             continue;
-        }
+        };
         warned.push(&view.name);
-        said.extend(view.warnings.iter().map(|text| format!("{}: {text}", view.name)));
+        said.push(format!("{}: {text}", view.name));
     }
-    said.extend(missing.iter().cloned());
+    said.extend(missing.iter().map(ToString::to_string));
     let mut text = String::new();
     for line in &said {
         // Writing to a string cannot fail.

@@ -33,7 +33,7 @@ fn row(view: &View) -> Vec<String> {
     let hundredths =
         |value: Option<f64>| value.map(|value| format!("{value:.2}")).unwrap_or_default();
     vec![
-        format!("{}<small>{}</small>", escape(&view.name), escape(&view.about)),
+        format!("{}<small>{}</small>", escape(&view.name), escape(&words::compares(view))),
         escape(&quantity(out.rms, &view.unit)),
         escape(&quantity(fitted.rms, &view.unit)),
         view.floor.map(|floor| escape(&quantity(floor, &view.unit))).unwrap_or_default(),
@@ -44,11 +44,11 @@ fn row(view: &View) -> Vec<String> {
 }
 
 fn notes(discovery: &Discovery) -> String {
-    let of_views = discovery.views.iter().flat_map(|view| &view.warnings);
+    let of_views = discovery.views.iter().filter_map(words::caveat);
     let items = concat(
         of_views
-            .chain(&words::notes(discovery))
-            .map(|note| format!("<li class=warning>{}</li>", escape(note))),
+            .chain(words::notes(discovery))
+            .map(|note| format!("<li class=warning>{}</li>", escape(&note))),
     );
     if items.is_empty() { items } else { format!("<ul class=findings>{items}</ul>") }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use missing_physics::diagnosis::views::disagreements;
 use missing_physics::diagnosis::{self, noise};
 use missing_physics::fit::{Fit, Until};
-use missing_physics::report::{Disagreement, Metrics, SplitMetrics, View};
+use missing_physics::report::{Caveat, Compares, Disagreement, Metrics, SplitMetrics, View};
 use missing_physics::statistics::metrics::Sums;
 use missing_physics::statistics::split::Split;
 use missing_physics::{Coordinate, Discovery, Fitted, ModelFamily};
@@ -17,15 +17,15 @@ use crate::model::{Model, ModelError};
 use crate::simulator::{Input, Start, simulate};
 use crate::windows::{Window, WindowErrors, WindowOptions, window_errors};
 
+mod no_view;
 mod tracking;
+
+pub use no_view::NoView;
 
 /// Lengths of restarted windows, s.
 const LENGTHS: [f64; 3] = [0.05, 0.1, 0.2];
 /// Fewest samples of a window.
 const SAMPLES: f64 = 10.0;
-/// Why nothing is simulated beside a given force.
-const GIVEN: &str = "the model's force is given over time: its motion cannot be simulated, so that there are no windows \
-                     and no free run";
 /// A free run whose error is this many times that of the longest windows has drifted.
 const DRIFTED: f64 = 5.0;
 
@@ -35,7 +35,7 @@ pub struct SideBySide {
     /// The views, those that decide first.
     pub views: Vec<View>,
     /// Views that there are none of, and why.
-    pub notes: Vec<String>,
+    pub missing: Vec<NoView>,
 }
 
 /// Given models on one recording.
@@ -47,7 +47,7 @@ pub struct GivenModels {
     /// Where views prefer different models.
     pub between: Vec<Disagreement>,
     /// Views that there are none of, and why.
-    pub missing: Vec<String>,
+    pub missing: Vec<NoView>,
 }
 
 impl FrictionFamily {
@@ -69,9 +69,9 @@ impl FrictionFamily {
         for (name, fit) in models.iter().take_while(|_| !over()) {
             let all = self.side_by_side(&fit.model)?;
             views.push((name.clone(), all.views));
-            for note in all.notes {
-                if !missing.contains(&note) {
-                    missing.push(note);
+            for none in all.missing {
+                if !missing.contains(&none) {
+                    missing.push(none);
                 }
             }
         }
@@ -95,22 +95,22 @@ impl FrictionFamily {
         for length in lengths {
             match self.windows(&model, length, &split) {
                 Ok(view) => all.views.push(view),
-                Err(note) => all.notes.push(note),
+                Err(none) => all.missing.push(none),
             }
         }
         if self.given.is_some() {
             // A force that is given over time moves nothing.
-            all.notes.push(GIVEN.to_owned());
+            all.missing.push(NoView::ForceGiven);
             return Ok(all);
         }
         let longest = all.views.last().map_or(f64::NAN, |view| view.metrics.validation.rms);
         match self.free_run(&model, longest, &split) {
             Ok(view) => all.views.push(view),
-            Err(note) => all.notes.push(note),
+            Err(none) => all.missing.push(none),
         }
         match tracking::view(self, &model, &split) {
             Ok(view) => all.views.push(view),
-            Err(note) => all.notes.push(note),
+            Err(none) => all.missing.push(none),
         }
         Ok(all)
     }
@@ -122,73 +122,64 @@ impl FrictionFamily {
         let quantity = self.quantity();
         View {
             name: format!("{} residual", quantity.name),
-            about: format!(
-                "{} along the measured motion, below {:.3} Hz",
-                quantity.name, self.prepared.bandwidth
-            ),
+            compares: Compares::Residual {
+                quantity: quantity.name,
+                bandwidth: self.prepared.bandwidth,
+            },
             unit: quantity.unit,
             metrics: SplitMetrics::of(&residual, &self.target, split),
             floor: Some(noise::floor(&residual, &state)).filter(|floor| *floor > 0.0),
             decides: true,
-            warnings: Vec::new(),
+            caveat: None,
         }
     }
 
-    fn windows(&self, model: &Model, length: f64, split: &Split) -> Result<View, String> {
+    fn windows(&self, model: &Model, length: f64, split: &Split) -> Result<View, NoView> {
         let text = format!("{length:.3}");
         let name = format!("windows of {} s", text.trim_end_matches('0'));
         let errors = window_errors(model, &self.recording, &WindowOptions::new(length))
-            .map_err(|error| format!("{name}: {error}"))?;
+            .map_err(|source| NoView::Windows { length, source })?;
         let parts = (self.time.as_slice(), split);
         let (fit, validation) = parted(errors.windows, self.recording.time(), parts);
-        let position = self.recording.require("position").map_err(|error| error.to_string())?;
+        let position = self.recording.require("position")?;
         let part = |windows: Vec<Window>| of_windows(length, windows, position);
         let metrics = SplitMetrics { fit: part(fit), validation: part(validation) };
         if !(metrics.fit.rms.is_finite() && metrics.validation.rms.is_finite()) {
-            return Err(format!(
-                "{name}: there are none on fitted or on held-out data, or the model runs away"
-            ));
+            return Err(NoView::NoWindows { length });
         }
         Ok(View {
             name,
-            about: "position, simulated from a fitted start in each window; outliers capped".into(),
+            compares: Compares::Windows { length },
             unit: self.axis.unit(Quantity::Length).to_owned(),
             metrics,
             floor: Some(self.prepared.position_noise).filter(|floor| *floor > 0.0),
             decides: true,
-            warnings: Vec::new(),
+            caveat: None,
         })
     }
 
-    fn free_run(&self, model: &Model, longest: f64, split: &Split) -> Result<View, String> {
-        let error = self.free_run_error(model).map_err(|error| format!("free run: {error}"))?;
-        let position = self.recording.require("position").map_err(|error| error.to_string())?;
+    fn free_run(&self, model: &Model, longest: f64, split: &Split) -> Result<View, NoView> {
+        let error = self.free_run_error(model)?;
+        let position = self.recording.require("position")?;
         let metrics = self.by_blocks(&error, position, 0..error.len(), split);
         let unit = self.axis.unit(Quantity::Length);
-        let mut warnings = Vec::new();
         let times = metrics.validation.rms / longest;
-        if times > DRIFTED {
-            warnings.push(format!(
-                "the free run has drifted: {times:.0} times the error of short windows. It adds up the \
-                 force error twice, also that of noise, and ranks models wrongly"
-            ));
-        }
         Ok(View {
             name: "free run".into(),
-            about: "position, simulated from the first sample of each segment".into(),
+            compares: Compares::FreeRun,
             unit: unit.to_owned(),
             metrics,
             floor: None,
             decides: false,
-            warnings,
+            caveat: (times > DRIFTED).then_some(Caveat::Drifted { times }),
         })
     }
 
     /// Measured less simulated position, sample by sample.
-    fn free_run_error(&self, model: &Model) -> Result<Vec<f64>, String> {
+    fn free_run_error(&self, model: &Model) -> Result<Vec<f64>, NoView> {
         let recording = &self.recording;
-        let force = recording.require("force").map_err(|error| error.to_string())?;
-        let position = recording.require("position").map_err(|error| error.to_string())?;
+        let force = recording.require("force")?;
+        let position = recording.require("position")?;
         let mut error = Vec::with_capacity(position.len());
         for (range, prepared) in recording.segments().iter().zip(&self.prepared.segments) {
             let first = prepared.start;
@@ -198,8 +189,7 @@ impl FrictionFamily {
                 ..Start::at(self.prepared.position[first], 0.0)
             };
             let (time, force) = (&recording.time()[range.clone()], &force[range.clone()]);
-            let run = simulate(model, &Input::new(time, force, recording.hold()), &start)
-                .map_err(|error| error.to_string())?;
+            let run = simulate(model, &Input::new(time, force, recording.hold()), &start)?;
             error.extend(position[range.clone()].iter().zip(&run.position).map(|(a, b)| a - b));
         }
         Ok(error)

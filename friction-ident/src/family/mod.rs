@@ -43,7 +43,7 @@ use missing_physics::{ComparedQuantity, Coordinate, Fitted, ModelFamily, Recordi
 use rayon::prelude::*;
 
 pub use apart::{Alike, explained, mistaken_for};
-pub use compare::GivenModels;
+pub use compare::{GivenModels, NoView, SideBySide};
 pub use foreign::ForeignModel;
 pub use hold::HoldChoice;
 pub use points::{Decides, ModelPoints, PointValues, Points};

@@ -58,18 +58,18 @@ fn preferred((a, b): &(&View, &View)) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::{Metrics, SplitMetrics};
+    use crate::report::{Compares, Metrics, SplitMetrics};
 
     fn view(name: &str, rms: f64, decides: bool) -> View {
         let metrics = Metrics::of(&[rms; 10], &[1.0; 10]);
         View {
             name: name.into(),
-            about: String::new(),
+            compares: Compares::FreeRun,
             unit: "N".into(),
             metrics: SplitMetrics { fit: metrics, validation: metrics },
             floor: None,
             decides,
-            warnings: Vec::new(),
+            caveat: None,
         }
     }
 

@@ -45,4 +45,4 @@ pub use rung::{Estimate, NamedError, Rung, SplitError, floor_key, relative_key};
 pub use samples::{Compared, Law, LawBin, Samples, Track};
 pub use surrogates::Surrogates;
 pub use verdict::{Ambiguity, Budget, Verdict};
-pub use view::{Disagreement, View};
+pub use view::{Caveat, Compares, Disagreement, View};

@@ -31,7 +31,7 @@ fn recording() -> Recording {
 fn views(model: &Model) -> Vec<View> {
     let family = FrictionFamily::new(&recording(), &Options::default()).unwrap();
     let all = family.side_by_side(&family.fitted(model).unwrap()).unwrap();
-    assert!(all.notes.is_empty(), "{:?}", all.notes);
+    assert!(all.missing.is_empty(), "{:?}", all.missing);
     all.views
 }
 
@@ -61,7 +61,8 @@ fn the_closed_loop_says_that_it_hides_friction() {
     let views = views(&table(false));
     let last = views.last().unwrap();
     assert!(!last.decides && last.metrics.validation.relative.unwrap() < 0.01, "{last:?}");
-    assert!(last.warnings[0].contains("a bare mass without any friction"), "{last:?}");
+    let Some(Caveat::Hidden { bare, share }) = last.caveat else { panic!("{last:?}") };
+    assert!(bare > last.metrics.validation.rms && share < 0.01, "{last:?}");
 }
 
 #[test]
@@ -72,5 +73,5 @@ fn without_a_reference_the_closed_loop_is_left_out_and_said_so() {
     let family = FrictionFamily::new(&bare.with_hold(whole.hold()), &Options::default()).unwrap();
     let all = family.side_by_side(&family.fitted(&table(true)).unwrap()).unwrap();
     assert_eq!(all.views.len(), 5);
-    assert!(all.notes[0].contains("no channel 'reference'"));
+    assert_eq!(all.missing, [NoView::NoReference]);
 }

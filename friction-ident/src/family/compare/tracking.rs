@@ -3,13 +3,13 @@
 //! The controller is taken from the recording: the recorded force as a linear function of position error,
 //! velocities and acceleration of the reference. Where that describes the force, the loop is simulated.
 
-use missing_physics::measurement::quantity::quantity;
-use missing_physics::report::View;
+use missing_physics::report::{Caveat, Compares, View};
 use missing_physics::statistics::basis::{dot, gram, solve};
 use missing_physics::statistics::split::Split;
 
+use super::NoView;
 use crate::axis::Quantity;
-use crate::closed_loop::{Controller, Sample, Setup, closed_loop};
+use crate::closed_loop::{ClosedLoopError, Controller, Sample, Setup, closed_loop};
 use crate::family::FrictionFamily;
 use crate::model::Model;
 use crate::reference::Reference;
@@ -20,65 +20,49 @@ const DESCRIBED: f64 = 0.9;
 const HIDDEN: f64 = 20.0;
 
 /// The view, or why there is none.
-pub fn view(family: &FrictionFamily, model: &Model, split: &Split) -> Result<View, String> {
+pub fn view(family: &FrictionFamily, model: &Model, split: &Split) -> Result<View, NoView> {
     let recording = &family.recording;
     if recording.channel("reference").is_none() {
-        return Err("closed loop: the recording has no channel 'reference'".into());
+        return Err(NoView::NoReference);
     }
     let [range] = recording.segments() else {
-        return Err("closed loop: the recording has several segments".into());
+        return Err(NoView::SeveralSegments);
     };
     if family.prepared.time.len() != recording.len() {
-        return Err("closed loop: the recording is not sampled uniformly".into());
+        return Err(NoView::NotUniform);
     }
-    let channel = |name| recording.require(name).map_err(|error| format!("closed loop: {error}"));
-    let (force, position) = (channel("force")?, channel("position")?);
-    let reference = reference(channel("reference")?, family.prepared.interval);
+    let (force, position) = (recording.require("force")?, recording.require("position")?);
+    let reference = reference(recording.require("reference")?, family.prepared.interval);
     let law = Law::of(&reference, position, force)?;
     let limit = force.iter().fold(0.0f64, |most, force| most.max(force.abs()));
-    let run = |model: &Model| -> Result<Vec<f64>, String> {
+    let run = |model: &Model| -> Result<Vec<f64>, ClosedLoopError> {
         // As fine as the model of the plant needs; the encoder plays no part in a difference of models.
         let setup = Setup { encoder_resolution: 0.0, force_limit: 1.5 * limit, ..Setup::default() };
         let mut law = law.clone();
-        let run = closed_loop(model, &reference, &mut law, &setup)
-            .map_err(|error| format!("closed loop: {error}"))?;
+        let run = closed_loop(model, &reference, &mut law, &setup)?;
         Ok(position.iter().zip(&run.position).map(|(a, b)| a - b).collect())
     };
     let error = run(model)?;
     let metrics = family.by_blocks(&error, position, range.clone(), split);
     let unit = family.axis.unit(Quantity::Length);
-    let mut warnings = Vec::new();
-    if let Ok(bare) = Model::new(model.axis(), model.mass())
-        .map_err(|e| e.to_string())
-        .and_then(|bare| run(&bare))
-    {
-        let bare = family.by_blocks(&bare, position, range.clone(), split).validation;
-        if bare.relative.is_some_and(|share| share < 0.01)
+    let bare = Model::new(model.axis(), model.mass()).ok().and_then(|bare| run(&bare).ok());
+    let bare = bare.map(|bare| family.by_blocks(&bare, position, range.clone(), split).validation);
+    let hidden = bare.filter(|bare| {
+        bare.relative.is_some_and(|share| share < 0.01)
             || bare.rms < HIDDEN * metrics.validation.rms
-        {
-            warnings.push(format!(
-                "the controller hides what the model lacks: a bare mass without any friction stays \
-                 within {} ({:.2} %) here",
-                quantity(bare.rms, unit),
-                100.0 * bare.relative.unwrap_or(0.0)
-            ));
-        }
-    }
+    });
+    let hidden =
+        hidden.map(|bare| Caveat::Hidden { bare: bare.rms, share: bare.relative.unwrap_or(0.0) });
     let lag: Vec<f64> = reference.position.iter().zip(position).map(|(r, x)| r - x).collect();
     let lag = (dot(&lag, &lag) / lag.len() as f64).sqrt();
     Ok(View {
         name: "closed loop".into(),
-        about: format!(
-            "position, simulated under the controller that the recording shows ({:.1} % of its force; \
-             measured lag behind the reference {} rms)",
-            100.0 * law.described,
-            quantity(lag, unit)
-        ),
+        compares: Compares::ClosedLoop { described: law.described, lag },
         unit: unit.to_owned(),
         metrics,
         floor: None,
         decides: false,
-        warnings,
+        caveat: hidden,
     })
 }
 
@@ -106,7 +90,7 @@ struct Law {
 
 impl Law {
     /// The controller behind a recorded force.
-    fn of(reference: &Reference, position: &[f64], force: &[f64]) -> Result<Self, String> {
+    fn of(reference: &Reference, position: &[f64], force: &[f64]) -> Result<Self, NoView> {
         let interval = reference.sample_time;
         let rows: Vec<Vec<f64>> = (1..position.len())
             .map(|k| {
@@ -146,11 +130,7 @@ impl Law {
             .sum();
         let described = 1.0 - left / total.max(f64::MIN_POSITIVE);
         if described.is_nan() || described < DESCRIBED {
-            return Err(format!(
-                "closed loop: only {:.0} % of the force follows from reference and position, so that \
-                 the controller is not known",
-                100.0 * described.max(0.0)
-            ));
+            return Err(NoView::UnknownController { described: described.max(0.0) });
         }
         let gains = scaled.iter().zip(&sizes).map(|(gain, size)| gain / size).collect();
         Ok(Self { gains, described, last: None })
