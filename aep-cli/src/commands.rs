@@ -6,6 +6,7 @@ use crate::failure::Failure;
 
 mod optimize_run;
 mod reproduce_control;
+mod reproduce_figure;
 mod reproduce_optimizers;
 mod reproduce_plant;
 mod reproduce_record;

@@ -11,7 +11,7 @@
 //! | `work` | a task, done |
 //! | `guard` | which requests are heard |
 //! | `routes` | requests and their answers |
-//! | `data`, `law`, `riddle`, `export` | a file and its mapping; a law while it is typed; challenges; files to take away |
+//! | `data`, `law`, `riddles`, `export` | a file and its mapping; a law while it is typed; challenges; files to take away |
 //! | `pictures` | models on the recording, as they are drawn |
 //! | `view` | what the page is told |
 
@@ -23,6 +23,7 @@ mod law;
 mod pictures;
 mod project;
 mod riddle;
+mod riddles;
 mod routes;
 mod session;
 mod task;

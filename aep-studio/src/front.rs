@@ -2,16 +2,13 @@
 //!
 //! The scripts of `src/front` are plain and share one scope; `uplot` there is a library, as it was published.
 
-mod packed;
+pub(crate) mod packed;
 pub(crate) mod samples;
 
 use missing_physics::Discovery;
-use missing_physics::report::{Curve, Plot};
-use serde_json::{Value, json};
+use serde_json::Value;
 
-use crate::html::escape;
-use crate::plot::Band;
-use crate::report::Source;
+use crate::source::Source;
 use crate::words;
 
 /// Styles of live plots.
@@ -67,43 +64,10 @@ fn inside_script(value: &Value) -> String {
     value.to_string().replace('<', "\\u003c")
 }
 
-/// The data of a figure as an attribute, with which scripts draw it anew.
-pub(crate) fn figure(plot: &Plot, bands: &[Band], named: &Named) -> String {
-    let band = |curve: &Curve| bands.iter().find(|band| band.label == curve.label);
-    let curves: Vec<Value> = (plot.curves.iter().enumerate())
-        .map(|(k, curve)| {
-            let class = crate::plot::colour(curve, k);
-            let mut json = json!({
-                "label": curve.label, "class": class,
-                "x": packed::floats(&curve.x), "y": packed::floats(&curve.y),
-            });
-            if let Some(band) = band(curve) {
-                json["band"] = json!({
-                    "x": packed::floats(&band.x), "low": packed::floats(&band.low), "high": packed::floats(&band.high),
-                });
-            }
-            json
-        })
-        .collect();
-    let json = json!({
-        "title": plot.title, "x": plot.x_label, "y": plot.y_label, "curves": curves,
-        "period": named.period_unit, "lines": named.lines,
-    });
-    format!(" data-plot=\"{}\"", escape(&json.to_string()))
-}
-
-/// What a figure's axis is called besides, for spectra.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Named {
-    /// For a spectrum its unit of a period; its axes are then logarithmic.
-    pub period_unit: Option<String>,
-    /// Frequencies with names.
-    pub lines: Vec<(f64, String)>,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn no_text_ends_the_element_that_holds_the_data() {

@@ -10,11 +10,12 @@ mod html;
 pub mod json;
 mod plot;
 pub mod report;
+mod source;
 pub mod studio;
 pub mod words;
 
 pub use html::escape;
-pub use report::Source;
+pub use source::Source;
 
 /// The examples of the README, run as tests.
 #[cfg(doctest)]

@@ -5,12 +5,13 @@ use std::fmt::Write;
 use missing_physics::report::{Curve, Plot};
 use serde::{Deserialize, Serialize};
 
-use crate::front::{self, Named};
 use crate::html::{concat, escape};
 
+mod live;
 mod scale;
 mod thin;
 
+pub(crate) use live::Named;
 use scale::PlotScale;
 
 const WIDTH: f64 = 520.0;
@@ -52,7 +53,7 @@ pub(crate) fn figure_with_bands(plot: &Plot, bands: &[Band]) -> Option<String> {
 
 /// The same with what its axis is called besides.
 pub(crate) fn named(plot: &Plot, bands: &[Band], named: &Named) -> Option<String> {
-    drawn(plot, bands, &front::figure(plot, bands, named))
+    drawn(plot, bands, &live::attribute(plot, bands, named))
 }
 
 fn drawn(plot: &Plot, bands: &[Band], attributes: &str) -> Option<String> {

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
+use missing_physics::Discovery;
 use missing_physics::measurement::check::DataCheck;
-use missing_physics::report::{Combinations, Samples};
-use missing_physics::{Discovery, Thresholds};
 
 use crate::front;
 use crate::html::{escape, section};
+use crate::source::Source;
 
 mod axes;
 mod compared;
@@ -27,26 +27,6 @@ mod views;
 mod where_it_fails;
 
 pub use axes::{AxisPage, axes};
-pub use missing_physics::report::Explained;
-
-/// Where the recording came from and what was asked of it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Source {
-    /// Name of the file.
-    pub name: String,
-    /// How each quantity was read: quantity, column in the file, unit.
-    pub columns: Vec<[String; 3]>,
-    /// The command that makes this page again.
-    pub command: String,
-    /// What an effect had to gain.
-    pub thresholds: Thresholds,
-    /// What parameters of the last model make together.
-    pub together: Combinations,
-    /// The recording and its models sample by sample, for the first screen; empty where the page has none.
-    pub samples: Samples,
-    /// What is known of the effects that the page names.
-    pub effects: Vec<Explained>,
-}
 
 pub(crate) const STYLE: &str = include_str!("report/style.css");
 /// Nothing is loaded: what the page shows is inside it.

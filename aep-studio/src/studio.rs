@@ -7,7 +7,8 @@ use serde_json::Value;
 
 use crate::front::{self, samples};
 use crate::html::escape;
-use crate::report::{self, Source, residual};
+use crate::report::{self, residual};
+use crate::source::Source;
 use crate::words;
 
 const PAGE: &str = include_str!("front/studio/page.html");

@@ -15,7 +15,7 @@ use serde::Serialize;
 
 use super::optimize_run::{self, RunArgs};
 use super::problems::{Listed, known};
-use super::reproduce::keep;
+use super::reproduce_figure::keep;
 use crate::app::Global;
 use crate::curve_plot::{self, Axes, Curve};
 use crate::failure::Failure;

@@ -8,7 +8,7 @@ use friction_ident::control::paper::{self, GAIN, Shown};
 use friction_ident::control::{Measures, Trial};
 use missing_physics::measurement::quantity::{percent, quantity};
 
-use super::reproduce::{Conditions, Figure, Made};
+use super::reproduce_figure::{Conditions, Figure, Made};
 use crate::curve_plot::{Axes, Curve};
 use crate::failure::Failure;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use aep_core::trials::Trials;
 use aep_problems::paper::{self, POPULATION, Reading};
 
-use super::reproduce::{Conditions, Figure, Made, quote};
+use super::reproduce_figure::{Conditions, Figure, Made, quote};
 use crate::curve_plot::{Axes, Curve};
 use crate::failure::Failure;
 

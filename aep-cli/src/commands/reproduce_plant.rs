@@ -12,7 +12,7 @@ use friction_ident::{Identification, Model, intervals, intervals_over};
 use missing_physics::Recording;
 use missing_physics::measurement::quantity::number;
 
-use super::reproduce::{Conditions, Figure, Made};
+use super::reproduce_figure::{Conditions, Figure, Made};
 use crate::curve_plot::{Axes, Curve};
 use crate::failure::Failure;
 

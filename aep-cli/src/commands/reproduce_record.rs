@@ -6,7 +6,7 @@ use aep_problems::paper::Claim;
 use aep_studio::report::plain::Figure;
 use serde::{Deserialize, Serialize};
 
-use super::reproduce::{Conditions, Made};
+use super::reproduce_figure::{Conditions, Made};
 use crate::failure::Failure;
 use crate::output;
 

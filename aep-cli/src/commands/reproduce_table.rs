@@ -5,7 +5,7 @@ use std::fmt::Write;
 use aep_problems::paper::Claim;
 use aep_studio::report::plain::{self, Part};
 
-use super::reproduce::quote;
+use super::reproduce_figure::quote;
 use crate::report::command;
 
 const HEADINGS: [&str; 6] = ["figure", "about", "the paper prints", "here", "verdict", "why"];

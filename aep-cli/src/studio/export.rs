@@ -3,11 +3,10 @@
 use friction_ident::family::Decides;
 use missing_physics::report::Combinations;
 use missing_physics::{Fitted, Thresholds, diagnosis, fit};
-use serde::{Deserialize, Serialize};
 
 use super::Studio;
 use super::session::Session;
-use super::work::From;
+use super::task::Form;
 use crate::app;
 use crate::args::OutputArgs;
 use crate::failure::Failure;
@@ -17,47 +16,14 @@ use crate::series;
 /// Seed of the placebos behind the p-values of a report, as that of the commands.
 const SEED: u64 = 1;
 
-/// What can be written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Form {
-    /// The report of a model and all before it.
-    Report,
-    /// Prediction and residual at every sample.
-    Series,
-    /// The compensator in C.
-    C,
-    /// The model as a functional mock-up unit.
-    Fmu,
-    /// The model as a scene that `MuJoCo` reads.
-    Mjcf,
-    /// The model as a robot description.
-    Urdf,
-}
-
-impl Form {
-    /// In words.
-    pub fn said(self) -> &'static str {
-        match self {
-            Self::Report => "the report",
-            Self::Series => "the series",
-            Self::C => "the compensator in C",
-            Self::Fmu => "the FMU",
-            Self::Mjcf => "the scene for MuJoCo",
-            Self::Urdf => "the robot description",
-        }
-    }
-}
-
 /// Writes it.
 pub fn write(
     studio: &Studio,
     session: &Session,
-    from: &From,
+    id: u32,
     form: Form,
     is_over: &dyn Fn() -> bool,
 ) -> Result<(), Failure> {
-    let id = from.entry.id;
     let place = |name: String| studio.project().place("exports", &name);
     let by_command = |to: &str, name: String| {
         let model = studio.project().model_path(id);
@@ -66,7 +32,7 @@ pub fn write(
         app::as_typed(words.into_iter().chain(paths))
     };
     match form {
-        Form::Report => report(studio, session, from, is_over),
+        Form::Report => report(studio, session, id, is_over),
         Form::Series => {
             let (names, models) = path(studio, session, id)?;
             let named: Vec<(String, Fitted)> = names.into_iter().zip(models).collect();
@@ -101,11 +67,10 @@ pub fn path(
 fn report(
     studio: &Studio,
     session: &Session,
-    from: &From,
+    id: u32,
     is_over: &dyn Fn() -> bool,
 ) -> Result<(), Failure> {
     let family = &*session.family;
-    let id = from.entry.id;
     let (_, models) = path(studio, session, id)?;
     let rungs = {
         let project = studio.project();

@@ -22,7 +22,7 @@ use tokio_stream::StreamExt;
 use tokio_stream::wrappers::BroadcastStream;
 
 use super::pictures::Pictured;
-use super::{Studio, data, guard, jobs, law, pictures, riddle, view};
+use super::{Studio, data, guard, jobs, law, pictures, riddles, view};
 use crate::failure::{BAD_INPUT, Failure};
 
 /// Largest recording, bytes.
@@ -358,7 +358,7 @@ struct Hidden {
 
 async fn make_riddle(State(shared): State<Shared>, from: Body) -> Answer {
     let Hidden { size } = asked(from).await?;
-    shared.change(move |studio| riddle::make(studio, size)).await
+    shared.change(move |studio| riddles::make(studio, size)).await
 }
 
 #[derive(Deserialize)]
@@ -369,5 +369,5 @@ struct Guess {
 
 async fn guess(State(shared): State<Shared>, from: Body) -> Answer {
     let Guess { effect } = asked(from).await?;
-    shared.change(move |studio| riddle::guess(studio, effect.as_deref())).await
+    shared.change(move |studio| riddles::guess(studio, effect.as_deref())).await
 }

@@ -2,7 +2,37 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::export::Form;
+/// What can be written to take away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Form {
+    /// The report of a model and all before it.
+    Report,
+    /// Prediction and residual at every sample.
+    Series,
+    /// The compensator in C.
+    C,
+    /// The model as a functional mock-up unit.
+    Fmu,
+    /// The model as a scene that `MuJoCo` reads.
+    Mjcf,
+    /// The model as a robot description.
+    Urdf,
+}
+
+impl Form {
+    /// In words.
+    pub fn said(self) -> &'static str {
+        match self {
+            Self::Report => "the report",
+            Self::Series => "the series",
+            Self::C => "the compensator in C",
+            Self::Fmu => "the FMU",
+            Self::Mjcf => "the scene for MuJoCo",
+            Self::Urdf => "the robot description",
+        }
+    }
+}
 
 /// Something to do; numbers are those of models.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

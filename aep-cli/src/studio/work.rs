@@ -133,20 +133,20 @@ pub fn done(
         }
         Task::Export { from: id, form } => {
             let is_over = || stop.load(Ordering::Relaxed);
-            export::write(studio, &session, &from(id)?, *form, &is_over)?;
+            export::write(studio, &session, from(id)?.entry.id, *form, &is_over)?;
             Ok(Done::Written)
         }
     }
 }
 
 /// The model that a task begins with.
-pub struct From {
+struct From {
     /// Its entry.
-    pub entry: Entry,
+    entry: Entry,
     /// As a plant.
-    pub model: Model,
+    model: Model,
     /// The recording with its fixed parameters.
-    pub family: Arc<FrictionFamily>,
+    family: Arc<FrictionFamily>,
 }
 
 impl From {

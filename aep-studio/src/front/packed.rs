@@ -25,7 +25,7 @@ pub(super) fn steps(values: impl Iterator<Item = f64> + Clone) -> Value {
 }
 
 /// Numbers of 32 bits, least significant byte first, in base 64.
-pub(super) fn floats(values: &[f64]) -> String {
+pub(crate) fn floats(values: &[f64]) -> String {
     STANDARD
         .encode(values.iter().flat_map(|value| (*value as f32).to_le_bytes()).collect::<Vec<u8>>())
 }

@@ -3,8 +3,9 @@
 use missing_physics::Discovery;
 use missing_physics::measurement::check::DataCheck;
 
-use super::{Source, foot_of, page_of, sections};
+use super::{foot_of, page_of, sections};
 use crate::html::{escape, table};
+use crate::source::Source;
 use crate::words::{AXES_HEADINGS, AxisResult, axis_row};
 
 /// An axis of the page.

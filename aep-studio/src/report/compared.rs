@@ -3,7 +3,7 @@
 use missing_physics::Discovery;
 
 use crate::html::{self, concat, escape, table};
-use crate::report::Source;
+use crate::source::Source;
 use crate::words::{self, Compared};
 
 /// The section of the record; nothing where there is none.

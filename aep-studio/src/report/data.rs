@@ -4,7 +4,7 @@ use missing_physics::measurement::check::{ChannelCheck, DataCheck, Severity};
 use missing_physics::measurement::quantity::{percent, quantity};
 
 use crate::html::{self, concat, escape, table};
-use crate::report::Source;
+use crate::source::Source;
 use crate::words;
 
 /// The section of the data.

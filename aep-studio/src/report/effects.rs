@@ -5,7 +5,7 @@ use missing_physics::report::{Curve, Explained, Law, Plot, Rung};
 
 use crate::html::{self, concat, escape};
 use crate::plot;
-use crate::report::Source;
+use crate::source::Source;
 use crate::words;
 
 const LEAD: &str = "Those of the last model with what each contributes: the line is its law as fitted, the points are the same with \

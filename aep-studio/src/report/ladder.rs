@@ -4,7 +4,7 @@ use missing_physics::Discovery;
 use missing_physics::report::{NamedError, Rung, SplitError};
 
 use crate::html::{self, escape, table};
-use crate::report::Source;
+use crate::source::Source;
 use crate::words::{self, ErrorName};
 
 const LEAD: &str = "Each model has one effect more. What counts is the error on held-out data, \

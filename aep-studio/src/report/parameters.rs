@@ -7,7 +7,7 @@ use missing_physics::measurement::quantity::number;
 use missing_physics::report::{Estimate, Rung};
 
 use crate::html::{self, escape, table};
-use crate::report::Source;
+use crate::source::Source;
 use crate::words;
 
 const LEAD: &str = "Values of the last model with their 95 % intervals, then the values in each \

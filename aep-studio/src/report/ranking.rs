@@ -5,7 +5,8 @@ use missing_physics::measurement::quantity::percent;
 use missing_physics::report::{Candidate, Decision};
 
 use crate::html::{self, bar, escape, table};
-use crate::report::{Source, effects};
+use crate::report::effects;
+use crate::source::Source;
 use crate::words;
 
 const LEAD: &str = "Every effect of the library, tried on what the model before it leaves. Gain: share of \

@@ -5,8 +5,8 @@ use missing_physics::Discovery;
 use missing_physics::measurement::quantity::quantity;
 use missing_physics::report::{Curve, Diagnosis, Plot, ResidualMap, Whiteness};
 
-use crate::front::Named;
 use crate::html::{self, concat, escape, table};
+use crate::plot::Named;
 use crate::plot::{self, Band};
 use crate::words;
 

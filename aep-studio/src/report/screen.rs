@@ -5,7 +5,7 @@ use missing_physics::Discovery;
 use super::ladder;
 use crate::front;
 use crate::plot;
-use crate::report::Source;
+use crate::source::Source;
 
 /// The section; nothing where the course of the recording is not known.
 pub(super) fn section(discovery: &Discovery, source: &Source) -> String {

@@ -4,7 +4,8 @@ use missing_physics::Discovery;
 use missing_physics::report::{Budget, Verdict};
 
 use crate::html::{concat, escape};
-use crate::report::{Source, effects};
+use crate::report::effects;
+use crate::source::Source;
 use crate::words;
 
 /// Head of the page: verdict, summary, and the numbers that carry it.

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use aep_studio::Source;
 use aep_studio::report::plain::{self, Figure, Part};
-use aep_studio::report::{self, AxisPage, Explained};
+use aep_studio::report::{self, AxisPage};
 use aep_studio::words::AxisResult;
 use missing_physics::measurement::check::check;
-use missing_physics::report::{Compared, Curve, Law, LawBin, Plot, Samples, Track};
+use missing_physics::report::{Compared, Curve, Explained, Law, LawBin, Plot, Samples, Track};
 use missing_physics::{Channel, Discovery, Recording};
 
 /// A text that ends whatever it stands in, were it not escaped.
