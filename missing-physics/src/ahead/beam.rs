@@ -43,6 +43,9 @@ const FORM: f64 = 4.0;
 /// What searches that share an observer tell it by.
 pub type Tell<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
 
+/// The effects of a model, what it would lose without each, and the model then; the least needed last.
+type Costs = Vec<(usize, Difference, Node)>;
+
 /// How far a search has come.
 pub struct Climb {
     base: Node,
@@ -192,9 +195,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 let before = costs.len().checked_sub(1).and_then(|k| climb.ranking.get(k));
                 beside.chance = before.map(|ranked| ranked.chance.clone()).unwrap_or_default();
             }
-            let by_chance = |cost| self.p_value(&beside, cost) > self.thresholds.chance;
-            let Some((_, cost, without)) = costs.last().filter(|cost| by_chance(cost.1)) else {
-                return self.conclude(climb, &last, costs, beside, rival);
+            let (p_value, by_chance) = self.chance_of(&climb, &costs, &beside);
+            let Some((_, cost, without)) = costs.last().filter(|_| by_chance) else {
+                return self.conclude(climb, &last, (costs, p_value), beside, rival);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));
             self.note(size, without, &last, cost, Outcome::Dropped, Some(Reason::Chance));
@@ -229,6 +232,29 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// Chance of as large a difference on all of the recording.
     fn p_value(&self, screened: &Screened, difference: Difference) -> f64 {
         screened.chance.p_value(self.in_full(difference.nats))
+    }
+
+    /// Chance of what a model would lose without its least effect, and whether that effect goes for it.
+    ///
+    /// Placebos are asked to first order at trial shapes, where a fit is free to choose the shape that suits the noise best.
+    /// What gains as much as is asked of many errors is beyond that. Of few errors an effect is asked as the placebos are,
+    /// beside the model without it; and one of all must be more than chance beside the base: of several that follow the
+    /// noise each gains beside the others.
+    fn chance_of(&self, climb: &Climb, costs: &Costs, beside: &Screened) -> (f64, bool) {
+        let Some((term, cost, without)) = costs.last() else { return (0.0, false) };
+        let by_chance = |p_value: f64| p_value > self.thresholds.chance;
+        let p_value = self.p_value(beside, *cost);
+        if cost.nats > self.thresholds.better / self.ahead.asked() {
+            return (p_value, by_chance(p_value));
+        }
+        let as_promised = |from: &Node, term: usize| {
+            let screened = self.beside(climb, from);
+            let promise = screened.promises.iter().find(|p| self.main(p.term) == self.main(term));
+            promise.map_or(1.0, |promise| screened.chance.p_value(self.in_full(promise.gain)))
+        };
+        let p_value = p_value.max(as_promised(without, *term));
+        let alone = |cost: &(usize, Difference, Node)| as_promised(&climb.base, cost.0);
+        (p_value, by_chance(p_value) || costs.iter().map(alone).all(by_chance))
     }
 
     /// What a gain on the part that is searched stands for on all of the recording: what is told is told of that.

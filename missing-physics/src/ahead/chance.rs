@@ -15,6 +15,9 @@ pub const SHIFTS: usize = 999;
 const SHORTEST: f64 = 0.02;
 /// A shift at which a column resembles itself more than this is no placebo for it.
 const SIMILAR: f64 = 0.3;
+/// Chances, of the shifts, between which the gains are taken to fall off as they do beyond: neighbouring shifts resemble
+/// each other, so that a short recording has few that are independent, and what is rarer is not counted but foretold.
+const FALL: (f64, f64) = (0.5, 0.1);
 
 /// What a trial changes in the errors, freed of the model's own parameters.
 pub struct Changed {
@@ -29,8 +32,9 @@ pub struct Changed {
 /// The null of a screening.
 #[derive(Clone, Debug, Default)]
 pub struct Chance {
-    /// The largest gain of any trial at each shift of the errors, nats.
-    largest: Vec<f64>,
+    /// At each shift of the errors the largest gain of any trial, nats, and how many trials there are for each one that
+    /// was asked there.
+    largest: Vec<(f64, f64)>,
     /// Trials that were ranked for each one that was looked at.
     ranked: f64,
 }
@@ -39,20 +43,37 @@ impl Chance {
     /// From the trials that were looked at, of `tried` that were ranked.
     pub fn of(left: &[f64], trials: &[Changed], tried: usize) -> Self {
         let ranked = tried as f64 / trials.len().max(1) as f64;
-        Self { largest: largest(left, trials), ranked: ranked.max(1.0) }
+        Self::new(largest(left, trials), ranked.max(1.0))
     }
 
-    /// Chance of a gain at least as large, by the shifts: never below one over their number. The trials that were only
-    /// ranked count as so many independent ones (Bonferroni).
+    fn new(mut largest: Vec<(f64, f64)>, ranked: f64) -> Self {
+        largest.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Self { largest, ranked }
+    }
+
+    /// Gain that so many of the shifts reach.
+    fn reached_by(&self, share: f64) -> f64 {
+        let place = (share * self.largest.len() as f64) as usize;
+        self.largest.get(place).map_or(f64::NAN, |(gain, _)| *gain)
+    }
+
+    /// Chance of a gain at least as large, by the shifts and by how gains fall off among them: never below one over their
+    /// number. The trials that were only ranked, or not asked at a shift, count as so many independent ones (Bonferroni).
     pub fn p_value(&self, gain: f64) -> f64 {
-        let as_large = self.largest.iter().filter(|other| **other >= gain).count();
-        let share = (as_large + 1) as f64 / (self.largest.len() + 1) as f64;
+        let as_large = self.largest.iter().filter(|(other, _)| *other >= gain);
+        let as_large: f64 = as_large.map(|(_, trials)| trials).sum();
+        let counted = (as_large + 1.0) / (self.largest.len() + 1) as f64;
+        let [often, seldom] = [FALL.0, FALL.1].map(|share| self.reached_by(share));
+        let rate = (FALL.0 / FALL.1).ln() / (seldom - often);
+        // No number where there are no shifts.
+        let foretold = FALL.1 * (-rate * (gain - seldom)).exp();
+        let share = if gain > seldom { counted.max(foretold) } else { counted };
         (share * self.ranked.max(1.0)).min(1.0)
     }
 }
 
-/// The largest gain of any trial at each shift of the errors, nats.
-fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
+/// The largest gain of any trial at each shift of the errors, nats, and the trials for each one that was asked there.
+fn largest(left: &[f64], trials: &[Changed]) -> Vec<(f64, f64)> {
     let points = left.len();
     let shortest = ((points as f64 * SHORTEST) as usize).max(1);
     let span = points.saturating_sub(2 * shortest);
@@ -99,8 +120,13 @@ fn largest(left: &[f64], trials: &[Changed]) -> Vec<f64> {
         shifts.iter().map(gain).collect()
     };
     let gains: Vec<Vec<f64>> = trials.par_iter().map(each).collect();
-    let most = |k: usize| gains.iter().map(|row| row[k]).fold(f64::NEG_INFINITY, f64::max);
-    (0..shifts.len()).map(most).filter(|gain| gain.is_finite()).collect()
+    let most = |k: usize| {
+        let asked = gains.iter().map(|row| row[k]).filter(|gain| gain.is_finite());
+        let (count, most) =
+            asked.fold((0, f64::NEG_INFINITY), |(n, most), gain| (n + 1, gain.max(most)));
+        (count > 0).then(|| (most, gains.len() as f64 / f64::from(count)))
+    };
+    (0..shifts.len()).filter_map(most).collect()
 }
 
 #[cfg(test)]
@@ -130,9 +156,9 @@ mod tests {
 
     #[test]
     fn a_p_value_is_never_below_the_resolution_of_the_shifts() {
-        let chance = Chance { largest: (0..999).map(f64::from).collect(), ranked: 1.0 };
+        let chance = Chance::new((0..999).map(|k| (f64::from(k), 1.0)).collect(), 1.0);
         assert_eq!(chance.p_value(f64::INFINITY), 1e-3);
-        assert_eq!(chance.p_value(998.0), 2e-3);
+        assert_eq!(chance.p_value(1e5), 1e-3);
         assert_eq!(chance.p_value(0.0), 1.0);
         // Where nothing could be shifted nothing is known.
         assert_eq!(Chance::default().p_value(1e9), 1.0);
@@ -140,9 +166,26 @@ mod tests {
 
     #[test]
     fn trials_that_were_only_ranked_count() {
-        let chance = Chance { largest: (0..999).map(f64::from).collect(), ranked: 5.0 };
+        let chance = Chance::new((0..999).map(|k| (f64::from(k), 1.0)).collect(), 5.0);
         assert!((chance.p_value(f64::INFINITY) - 5e-3).abs() < 1e-12);
         assert_eq!(chance.p_value(500.0), 1.0);
+    }
+
+    #[test]
+    fn trials_that_are_not_asked_at_a_shift_count() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(6);
+        let noise: Vec<f64> = (0..2000).map(|_| random.random_range(-1.0..1.0)).collect();
+        let slow: Vec<f64> = (0..2000).map(|k| (f64::from(k) * 0.01).sin()).collect();
+        let of = |c: &Vec<f64>| Changed {
+            matrix: vec![vec![dot(c, c)]],
+            columns: vec![c.clone()],
+            positive: false,
+        };
+        let both = largest(&noise, &[of(&slow), of(&noise)]);
+        assert!(both.iter().any(|(_, trials)| *trials == 2.0));
+        assert!(both.iter().any(|(_, trials)| *trials == 1.0));
+        let chance = Chance::new(vec![(1.0, 4.0); 99], 1.0);
+        assert_eq!((chance.p_value(1.0), chance.p_value(2.0)), (1.0, 0.01));
     }
 
     #[test]

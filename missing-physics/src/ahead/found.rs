@@ -267,11 +267,24 @@ impl Found {
     }
 }
 
+/// A candidate beside a model.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The term.
+    pub term: usize,
+    /// The model with it.
+    pub model: Fitted,
+    /// What it gains, nats.
+    pub nats: f64,
+    /// Chance of as much.
+    pub p_value: f64,
+}
+
 /// Candidates beside one model.
 #[derive(Clone, Debug)]
 pub struct Ranked {
-    /// Term, the model with it, what it gains (nats), the best first.
-    pub rows: Vec<(usize, Fitted, f64)>,
+    /// The candidates, the best first.
+    pub rows: Vec<Row>,
     /// What any candidate gains by chance, to first order.
     pub chance: Chance,
     /// Number of errors that say as much as independent ones.
@@ -288,11 +301,12 @@ impl Ranked {
         let mut asked = Vec::new();
         loop {
             let first = self.rows.iter_mut().take(ASKED);
-            let mut open = first.filter(|row| row.2 > least && !asked.contains(&row.0));
+            let mut open = first.filter(|row| row.nats > least && !asked.contains(&row.term));
             let Some(row) = open.next() else { break };
-            asked.push(row.0);
-            (row.1, row.2) = gain(row.0, &row.1);
-            self.rows.sort_by(|a, b| b.2.total_cmp(&a.2));
+            asked.push(row.term);
+            (row.model, row.nats) = gain(row.term, &row.model);
+            row.p_value = row.p_value.max(self.chance.p_value(row.nats));
+            self.rows.sort_by(|a, b| b.nats.total_cmp(&a.nats));
         }
     }
 }
@@ -400,20 +414,23 @@ mod tests {
     {
         let whole = Plant::new(1, &[(WAVE, &[0.05])]);
         let node = |terms| fit::evaluated(&whole, Plant::model(terms), 0);
-        let row = |terms: &[(usize, &[f64])], nats| (terms[0].0, Plant::model(terms), nats);
+        let row = |terms: &[(usize, &[f64])], nats| {
+            let (term, model) = (terms[0].0, Plant::model(terms));
+            Row { term, model, nats, p_value: 0.01 }
+        };
         // What a part promised.
         let rows = vec![row(&[(BEAT, &[0.03])], 700.0), row(&[(WAVE, &[0.05])], 600.0)];
         let ranking = vec![Ranked { rows, chance: Chance::default(), points: 1000.0 }];
         let found = Found { ranking, ..Found::of(node(&[])) };
         let thresholds = Thresholds { most: 0, better: 20.0, ..Thresholds::default() };
         let told = found.clone().confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
-        let [(first, _, gain), (second, _, nothing)] = &told.ranking[0].rows[..] else { panic!() };
-        assert_eq!((*first, *second), (WAVE, BEAT));
-        assert!(*gain > 1000.0 && *nothing < 20.0, "{gain} {nothing}");
+        let [first, second] = &told.ranking[0].rows[..] else { panic!() };
+        assert_eq!((first.term, second.term), (WAVE, BEAT));
+        assert!(first.nats > 1000.0 && second.nats < 20.0, "{first:?} {second:?}");
         // A search that adds tells of its rungs.
         let thresholds = Thresholds { most: 1, ..thresholds };
         let told = found.confirmed(&whole, &whole, &thresholds, &|| false).unwrap();
-        assert_eq!(told.ranking[0].rows[0].2, 700.0);
+        assert_eq!(told.ranking[0].rows[0].nats, 700.0);
     }
 
     #[test]

@@ -206,13 +206,13 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
 
     fn ranking(&self) -> Vec<Vec<Candidate>> {
         let row = |ranked: &Ranked| -> Vec<Candidate> {
-            let each = ranked.rows.iter().map(|(term, model, nats)| Candidate {
-                effect: self.family.terms()[*term].name.clone(),
-                gain: share(*nats, ranked.points),
+            let each = ranked.rows.iter().map(|row| Candidate {
+                effect: self.family.terms()[row.term].name.clone(),
+                gain: share(row.nats, ranked.points),
                 // A gain that is no number is none.
-                p_value: if nats.is_nan() { 1.0 } else { ranked.chance.p_value(*nats) },
-                size: self.size(*term, model),
-                nats: Some(*nats).filter(|nats| nats.is_finite()),
+                p_value: if row.nats.is_nan() { 1.0 } else { row.p_value },
+                size: self.size(row.term, &row.model),
+                nats: Some(row.nats).filter(|nats| nats.is_finite()),
             });
             each.collect()
         };

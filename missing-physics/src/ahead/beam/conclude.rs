@@ -1,6 +1,6 @@
 //! The size of the set, what is not needed, and the answer.
 
-use super::{Climb, STEPS, Search, negative};
+use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
@@ -47,13 +47,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// Takes out what is not needed, and says what each of the rest is worth.
-    pub(super) fn prune(
-        &mut self,
-        climb: &Climb,
-        mut best: Node,
-    ) -> (Node, Vec<(usize, Difference, Node)>) {
+    pub(super) fn prune(&mut self, climb: &Climb, mut best: Node) -> (Node, Costs) {
         loop {
-            let mut costs: Vec<(usize, Difference, Node)> = Vec::new();
+            let mut costs = Costs::new();
             for term in Self::added(&climb.base, &best) {
                 let without = self.without(climb, &best, term);
                 let cost = self.comparison.compare(&without, &best);
@@ -103,7 +99,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         mut self,
         climb: Climb,
         last: &Node,
-        costs: Vec<(usize, Difference, Node)>,
+        (costs, least): (Costs, f64),
         mut beside: Screened,
         rival: Option<Remains>,
     ) -> Found {
@@ -142,7 +138,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         for promise in &mut beside.promises {
             promise.leverage = promise.leverage.map(|leverage| self.in_full(leverage));
         }
-        let p_values = costs.iter().map(|(_, cost, _)| self.p_value(&beside, *cost)).collect();
+        let by_chance = |cost: &(_, Difference, _)| self.p_value(&beside, cost.1);
+        let mut p_values: Vec<f64> = costs.iter().map(by_chance).collect();
+        if let Some(last) = p_values.last_mut() {
+            *last = last.max(least);
+        }
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(last);
         for decision in &mut decisions {

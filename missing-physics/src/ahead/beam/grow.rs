@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::{Climb, INSIDE, STEPS, Search};
 use crate::ahead::compare::Difference;
-use crate::ahead::found::Ranked;
+use crate::ahead::found::{Ranked, Row};
 use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
 use crate::ahead::screen::{Promise, Screened, screen};
@@ -16,9 +16,9 @@ use crate::task::Event;
 
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
 const NEAR: f64 = 1.25;
-/// Share of what an effect must gain that a candidate must promise to be fitted beside the base, and the most that is
-/// asked, nats: more than chance promises. There the first order errs most.
-const PROMISING: (f64, f64) = (0.15, 12.0);
+/// Share of what an effect must gain that a candidate must promise to be fitted beside the base, and the least and the
+/// most that is asked, nats: more than chance promises. There the first order errs most.
+const PROMISING: (f64, f64, f64) = (0.15, 2.0, 12.0);
 /// A search ends where chance gains as much as the best candidate this often: two effects may hide each other, but not
 /// so well.
 const HOPELESS: f64 = 0.5;
@@ -133,7 +133,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         // The first order seldom promises less than half of what a fit gains.
         let least = if size == 1 {
-            (PROMISING.0 * self.thresholds.better).min(PROMISING.1)
+            (PROMISING.0 * self.thresholds.better).clamp(PROMISING.1, PROMISING.2)
         } else {
             0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
         };
@@ -228,12 +228,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.
     fn ranked(&self, from: &Node, children: &[Node], screened: Screened) -> Ranked {
-        let mut rows: Vec<(usize, Fitted, f64)> = Vec::new();
+        let mut rows: Vec<Row> = Vec::new();
         for promise in screened.promises {
             let main = self.main(promise.term);
-            if rows.iter().any(|(term, ..)| self.main(*term) == main) {
+            if rows.iter().any(|row| self.main(row.term) == main) {
                 continue;
             }
+            let by_chance = screened.chance.p_value(self.in_full(promise.gain));
             let has =
                 |node: &&Node| node.effects(self.family).iter().any(|t| self.main(*t) == main);
             let fitted = children.iter().find(has);
@@ -244,9 +245,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             });
             let start = promise.starts.into_iter().next().unwrap_or_default();
             let (term, model, gain) = row.unwrap_or((promise.term, start, promise.gain));
-            rows.push((term, model, self.in_full(gain)));
+            let nats = self.in_full(gain);
+            let p_value = by_chance.max(screened.chance.p_value(nats));
+            rows.push(Row { term, model, nats, p_value });
         }
-        rows.sort_by(|a, b| b.2.total_cmp(&a.2));
+        rows.sort_by(|a, b| b.nats.total_cmp(&a.nats));
         Ranked {
             rows,
             chance: screened.chance,

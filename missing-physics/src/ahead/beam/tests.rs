@@ -106,7 +106,7 @@ fn where_nothing_is_hidden_nothing_is_added() {
     for seed in 40..60 {
         let found = found(&Plant::new(seed, &[]), narrow(), 4);
         assert!(found.added.is_empty() && found.rungs.is_empty() && found.complete, "seed {seed}");
-        assert!(found.ranking[0].rows.iter().all(|row| row.2 < 20.0), "seed {seed}");
+        assert!(found.ranking[0].rows.iter().all(|row| row.nats < 20.0), "seed {seed}");
     }
 }
 
