@@ -3,6 +3,8 @@
 mod archive;
 mod companions;
 mod components;
+mod descent;
+mod descents;
 mod distribution;
 mod exchange;
 mod guess;

@@ -14,6 +14,9 @@ pub struct Trial {
     pub solved: bool,
 }
 
+/// `aep-lineages` where it is told the residuals.
+pub const TOLD: &str = "aep-lineages with residuals";
+
 /// Whose method it is, and what it is told.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
@@ -27,7 +30,7 @@ impl Group {
     /// That of the method called `name`.
     pub fn of(name: &str) -> Self {
         match name {
-            "polish" | "scipy least_squares" => Self::Told,
+            TOLD | "polish" | "scipy least_squares" => Self::Told,
             _ if methods::find(name).is_some() => Self::Ours,
             _ => Self::Others,
         }
