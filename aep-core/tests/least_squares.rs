@@ -107,9 +107,8 @@ fn a_resumed_run_equals_the_uninterrupted_one_in_a_descent_too() {
             .run(&mut *start(), &problem)
             .unwrap();
         assert_eq!((first.stop, first.generations), (StopReason::Interrupted, after));
-        let resumed = Driver::new(Budget::generations(200))
-            .resume(&mut *start(), &problem, &path)
-            .unwrap();
+        let resumed =
+            Driver::new(Budget::generations(200)).resume(&mut *start(), &problem, &path).unwrap();
         assert_eq!(without_time(resumed), without_time(whole.clone()), "after {after}");
     }
 }

@@ -1,33 +1,34 @@
 //! One descent on residuals: Levenberg-Marquardt with few evaluations.
+//!
+//! Slopes are made by one difference a component, then corrected by every step that leads down (Broyden), and made anew
+//! where that no longer does. Positions are shares of the domain's width.
+//!
+//! References: C. G. Broyden, Mathematics of Computation 19, 1965; K. Madsen, H. B. Nielsen, O. Tingleff, "Methods for
+//! non-linear least squares problems", 2004 (secant version, and how the damping follows the gain).
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-/// Half the way of a first difference, as a share of the domain's width: wide ones see over roughness and noise, ...
-/// ... and the narrowest, exact ones.
-fn k(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}
-macro_rules! tuned {
-    ($name:ident, $env:literal, $default:expr) => {
-        #[allow(non_snake_case)]
-        fn $name() -> f64 {
-            static V: std::sync::OnceLock<f64> = std::sync::OnceLock::new();
-            *V.get_or_init(|| k($env, $default))
-        }
-    };
-}
-tuned!(FIRST_WIDTH, "K_WIDTH", 1e-2);
-tuned!(LEAST_WIDTH, "K_LEAST", 1e-6);
-tuned!(NARROWER, "K_NARROWER", 0.1);
-tuned!(FIRST_DAMPING, "K_DAMPING", 1e-3);
-tuned!(LONGEST, "K_LONGEST", 0.5);
-tuned!(WORTHWHILE, "K_WORTH", 1e-3);
-tuned!(POOR, "K_POOR", 0.25);
-tuned!(FAILURES, "K_FAILURES", 4.0);
-tuned!(HOPELESS, "K_HOPELESS", 0.1);
-tuned!(NEAR, "K_NEAR", 1e-2);
-tuned!(TAKE, "K_TAKE", 1.0);
+/// First way of a difference, as a share of the domain's width, and the last one: wide ones see over roughness and
+/// noise, narrow ones are exact.
+const WIDTHS: (f64, f64) = (2e-2, 1e-6);
+/// By what a difference narrows where it no longer leads down.
+const NARROWER: f64 = 0.1;
+/// Damping of the first step, and the least one.
+const DAMPING: (f64, f64) = (0.1, 1e-9);
+/// Longest change of a component in one step, as a share of the domain's width: slopes do not hold farther.
+const LONGEST: f64 = 0.2;
+/// Relative fall of the cost that counts as leading down.
+const WORTHWHILE: f64 = 1e-3;
+/// Share of the promised fall below which slopes are made anew by differences.
+const POOR: f64 = 0.25;
+/// Steps with ever more damping that may fail before the differences are narrowed.
+const FAILURES: u32 = 4;
+/// A descent is given up where its slopes promise less than this share of what it is behind the best.
+const HOPELESS: f64 = 0.1;
+/// Distance of the farthest component, as a share of the domain's width, within which a descent goes where an earlier one
+/// has ended.
+const NEAR: f64 = 1e-2;
 
 /// Where an earlier descent has ended.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -36,12 +37,17 @@ pub(super) struct End {
     pub cost: f64,
 }
 
+/// Rows of shares that are to be evaluated.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum Asked {
     /// Places, of which the best one is the start.
     Places(Vec<f64>),
+    /// One component moved in each row.
     Differences(Vec<f64>),
+    /// A step, and how much lower the cost should be there.
     Step { to: Vec<f64>, promised: f64 },
+    /// It has ended.
+    Nothing,
 }
 
 /// Where a descent stands.
@@ -59,7 +65,6 @@ pub(super) struct Descent {
     width: f64,
     failures: u32,
     asked: Asked,
-    ended: bool,
 }
 
 impl Descent {
@@ -71,23 +76,24 @@ impl Descent {
             residuals: DVector::zeros(0),
             slopes: DMatrix::zeros(0, 0),
             fresh: false,
-            damping: FIRST_DAMPING(),
+            damping: DAMPING.0,
             growth: 2.0,
-            width: FIRST_WIDTH(),
+            width: WIDTHS.0,
             failures: 0,
             asked: Asked::Places(places),
-            ended: false,
         }
     }
 
     pub fn asked(&self) -> &[f64] {
         match &self.asked {
-            Asked::Places(points) | Asked::Differences(points) | Asked::Step { to: points, .. } => points,
+            Asked::Places(points) | Asked::Differences(points) => points,
+            Asked::Step { to, .. } => to,
+            Asked::Nothing => &[],
         }
     }
 
     pub fn ended(&self) -> bool {
-        self.ended
+        matches!(self.asked, Asked::Nothing)
     }
 
     /// Where it stands; nowhere if no place had a cost.
@@ -95,89 +101,101 @@ impl Descent {
         self.cost.is_finite().then(|| End { at: self.at.clone(), cost: self.cost })
     }
 
+    /// Takes the costs and residuals of what was asked; an empty row of residuals is a failure. `lowest` is the
+    /// lowest cost of the run.
     pub fn tell(&mut self, costs: &[f64], residuals: &[Vec<f64>], lowest: f64, ends: &[End]) {
-        let n = self.at.len();
-        match std::mem::replace(&mut self.asked, Asked::Places(Vec::new())) {
-            Asked::Places(places) => {
-                if !self.take_best(&places, costs, residuals) {
-                    self.ended = true;
-                    return;
-                }
-                self.differ();
-            }
+        match std::mem::replace(&mut self.asked, Asked::Nothing) {
+            Asked::Places(places) if self.take_best(&places, costs, residuals) => self.differ(),
+            Asked::Places(_) | Asked::Nothing => {}
             Asked::Differences(points) => {
-                let m = self.residuals.len();
-                self.slopes = DMatrix::zeros(m, n);
-                for (j, found) in residuals.iter().enumerate() {
-                    let moved = points[j * n + j] - self.at[j];
-                    if found.len() == m && costs[j].is_finite() {
-                        let column = (DVector::from_column_slice(found) - &self.residuals) / moved;
-                        self.slopes.set_column(j, &column);
-                    }
+                self.set_slopes(&points, costs, residuals);
+                self.take_best(&points, costs, residuals);
+                if !self.is_hopeless(lowest) {
+                    self.go_on();
                 }
-                self.fresh = true;
-                self.failures = 0;
-                if TAKE() > 0.0 {
-                    self.take_best(&points, costs, residuals);
-                }
-                if self.cost > lowest {
-                    let promised = self.step(1e-9).map_or(0.0, |(_, promised)| promised);
-                    if promised < HOPELESS() * (self.cost - lowest) {
-                        self.ended = true;
-                        return;
-                    }
-                }
-                self.go();
             }
             Asked::Step { to, promised } => {
                 let gain = self.cost - costs[0];
                 if gain > 0.0 && residuals[0].len() == self.residuals.len() {
                     self.accept(to, costs[0], &residuals[0], promised);
                     if ends.iter().any(|end| self.is_at(end)) {
-                        self.ended = true;
                         return;
                     }
-                    if gain < WORTHWHILE() * self.cost {
+                    if gain < WORTHWHILE * self.cost {
                         self.narrow();
-                    } else if gain < POOR() * promised {
+                    } else if gain < POOR * promised {
                         self.differ();
                     } else {
-                        self.go();
+                        self.go_on();
                     }
-                } else if self.fresh {
-                    self.damping *= self.growth;
-                    self.growth *= 2.0;
-                    self.failures += 1;
-                    if self.failures as f64 >= FAILURES() { self.narrow() } else { self.go() }
                 } else {
-                    self.differ();
+                    self.fail();
                 }
             }
         }
     }
 
-    fn is_at(&self, end: &End) -> bool {
-        let apart = self.at.iter().zip(&end.at).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        apart < NEAR() && self.cost >= end.cost * (1.0 - 1e-3)
+    /// A step has not led down: more damping, or, where the slopes are not those of here, other slopes.
+    fn fail(&mut self) {
+        if !self.fresh {
+            self.differ();
+            return;
+        }
+        self.damping *= self.growth;
+        self.growth *= 2.0;
+        self.failures += 1;
+        if self.failures >= FAILURES { self.narrow() } else { self.go_on() }
     }
 
+    fn set_slopes(&mut self, points: &[f64], costs: &[f64], residuals: &[Vec<f64>]) {
+        let (m, n) = (self.residuals.len(), self.at.len());
+        self.slopes = DMatrix::zeros(m, n);
+        for (j, found) in residuals.iter().enumerate() {
+            // Where it fails a component is left where it is.
+            if found.len() == m && costs[j].is_finite() {
+                let moved = points[j * n + j] - self.at[j];
+                let change = DVector::from_column_slice(found) - &self.residuals;
+                self.slopes.set_column(j, &(change / moved));
+            }
+        }
+        self.fresh = true;
+        self.failures = 0;
+    }
+
+    fn is_hopeless(&self, lowest: f64) -> bool {
+        let promised = self.step(DAMPING.1).map_or(0.0, |(_, promised)| promised);
+        self.cost > lowest && promised < HOPELESS * (self.cost - lowest)
+    }
+
+    fn is_at(&self, end: &End) -> bool {
+        let apart = self.at.iter().zip(&end.at).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        apart < NEAR && self.cost >= end.cost * (1.0 - WORTHWHILE)
+    }
+
+    /// Goes to the best of `points` if that is lower; whether it is.
     fn take_best(&mut self, points: &[f64], costs: &[f64], residuals: &[Vec<f64>]) -> bool {
         let n = self.at.len();
-        let usable = (0..costs.len()).filter(|i| !residuals[*i].is_empty() && costs[*i] < self.cost);
-        let Some(best) = usable.min_by(|a, b| costs[*a].total_cmp(&costs[*b])) else { return false };
+        let usable =
+            (0..costs.len()).filter(|i| !residuals[*i].is_empty() && costs[*i] < self.cost);
+        let Some(best) = usable.min_by(|a, b| costs[*a].total_cmp(&costs[*b])) else {
+            return false;
+        };
         self.at = points[best * n..(best + 1) * n].to_vec();
         self.cost = costs[best];
         self.residuals = DVector::from_column_slice(&residuals[best]);
         true
     }
 
+    /// Takes a step that has led down, and corrects slopes and damping by it.
     fn accept(&mut self, to: Vec<f64>, cost: f64, residuals: &[f64], promised: f64) {
         let residuals = DVector::from_column_slice(residuals);
-        let step = DVector::from_iterator(to.len(), to.iter().zip(&self.at).map(|(to, at)| to - at));
+        let step =
+            DVector::from_iterator(to.len(), to.iter().zip(&self.at).map(|(to, at)| to - at));
         let unforeseen = &residuals - &self.residuals - &self.slopes * &step;
         self.slopes += unforeseen * step.transpose() / step.norm_squared();
         let ratio = (self.cost - cost) / promised;
-        self.damping = (self.damping * (1.0 - (2.0 * ratio - 1.0).powi(3)).max(1.0 / 3.0)).max(1e-9);
+        self.damping =
+            (self.damping * (1.0 - (2.0 * ratio - 1.0).powi(3)).max(1.0 / 3.0)).max(DAMPING.1);
         self.growth = 2.0;
         (self.at, self.cost, self.residuals) = (to, cost, residuals);
         self.fresh = false;
@@ -194,15 +212,18 @@ impl Descent {
         self.asked = Asked::Differences(points);
     }
 
+    /// Narrower differences, unless they are narrow enough: then it has ended.
     fn narrow(&mut self) {
-        self.width *= NARROWER();
-        self.damping = self.damping.min(FIRST_DAMPING());
+        self.width *= NARROWER;
+        self.damping = self.damping.min(DAMPING.0);
         self.growth = 2.0;
-        if self.width < LEAST_WIDTH() { self.ended = true } else { self.differ() }
+        if self.width >= WIDTHS.1 {
+            self.differ();
+        }
     }
 
     /// Asks for a step, or for other slopes where none is promised.
-    fn go(&mut self) {
+    fn go_on(&mut self) {
         match self.step(self.damping) {
             Some((to, promised)) => self.asked = Asked::Step { to, promised },
             None if self.fresh => self.narrow(),
@@ -227,9 +248,10 @@ impl Descent {
         let change = normal.cholesky()?.solve(&moment.select_rows(&active));
         let mut to = self.at.clone();
         for (j, change) in active.iter().zip(change.iter()) {
-            to[*j] = (to[*j] + change.clamp(-LONGEST(), LONGEST())).clamp(0.0, 1.0);
+            to[*j] = (to[*j] + change.clamp(-LONGEST, LONGEST)).clamp(0.0, 1.0);
         }
-        let moved = DVector::from_iterator(to.len(), to.iter().zip(&self.at).map(|(to, at)| to - at));
+        let moved =
+            DVector::from_iterator(to.len(), to.iter().zip(&self.at).map(|(to, at)| to - at));
         let expected = (&self.residuals + &self.slopes * moved).norm_squared();
         let now = self.residuals.norm_squared();
         let promised = self.cost * (1.0 - expected / now);

@@ -50,6 +50,12 @@ struct State<T: Scalar> {
     descents: Option<Box<Descents>>,
 }
 
+impl<T: Scalar> State<T> {
+    fn lowest(&self) -> f64 {
+        self.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64())
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 enum Phase {
     Initial,
@@ -144,12 +150,9 @@ impl<T: Scalar> Run<T> {
         })
     }
 
-    fn descents_next(&self) -> Option<&Descents> {
-        self.state.descents.as_deref().filter(|descents| descents.are_next())
-    }
-
-    fn lowest(&self) -> f64 {
-        self.state.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64())
+    /// Whether descents are asked next, not the search.
+    fn descents_next(&self) -> bool {
+        self.state.descents.as_ref().is_some_and(|descents| descents.are_next())
     }
 
     /// Notes the best of what was asked; costs as the search takes them.
@@ -227,8 +230,7 @@ impl<T: Scalar> Run<T> {
 }
 
 fn setting<'a, T: Scalar>(config: &'a Lineages, seed: u64, state: &State<T>) -> Setting<'a> {
-    let lowest = state.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64());
-    Setting { config, seed, generation: state.told, lowest }
+    Setting { config, seed, generation: state.told, lowest: state.lowest() }
 }
 
 impl<T: Scalar> Algorithm<T> for Run<T> {
@@ -246,16 +248,16 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
 
     fn ask(&mut self) -> Batch<'_, T> {
         if self.turn.ask() {
-            if let Some(descents) = self.descents_next() {
-                let mut drawn = Vec::new();
-                descents.ask(&mut drawn);
-                self.drawn = drawn;
+            self.drawn.clear();
+            if self.descents_next() {
+                self.drawn.extend_from_slice(
+                    self.state.descents.as_ref().map_or(&[], |descents| descents.asked()),
+                );
                 self.place();
                 return self.points.batch();
             }
             let setting = setting(&self.config, self.seed, &self.state);
             let (ration, drawn) = (&mut self.state.ration, &mut self.drawn);
-            drawn.clear();
             match &mut self.state.phase {
                 Phase::Initial => drawn.extend_from_slice(&self.initial),
                 Phase::Exchange(exchange, _) => {
@@ -274,7 +276,7 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
     fn tell(&mut self, costs: &[T]) -> Result<(), TellError> {
         self.turn.tell(costs.len(), self.points.len())?;
         let costs = self.note(costs);
-        if self.descents_next().is_some() {
+        if self.descents_next() {
             // Whoever evaluates has no residuals after all.
             self.state.descents = None;
             self.state.told += 1;
@@ -286,25 +288,28 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
 
     fn wants_residuals(&self) -> bool {
         let first = matches!(self.state.phase, Phase::Initial);
-        first && self.config.uses(Ingredient::Descents) || self.descents_next().is_some()
+        first && self.config.uses(Ingredient::Descents) || self.descents_next()
     }
 
     fn tell_residuals(&mut self, costs: &[T], residuals: &[Vec<f64>]) -> Result<(), TellError> {
-        if !self.wants_residuals() || residuals.iter().all(Vec::is_empty) && self.state.descents.is_none() {
+        if !self.wants_residuals()
+            || residuals.iter().all(Vec::is_empty) && self.state.descents.is_none()
+        {
             return self.tell(costs);
         }
         self.turn.tell(costs.len(), self.points.len())?;
         let costs = self.note(costs);
-        let lowest = self.lowest();
+        let lowest = self.state.lowest();
+        let mut rng = Streams::new(self.seed, Purpose::Restart, self.state.told).stream(0);
         match &mut self.state.descents {
             Some(descents) => {
-                let mut rng = Streams::new(self.seed, Purpose::Restart, self.state.told).stream(0);
                 descents.tell(&costs, residuals, lowest, &mut rng);
                 self.state.told += 1;
             }
             None => {
                 let n = self.domain.dimension();
-                let descents = Descents::new(n, self.initial.clone(), &costs, residuals);
+                let told = (&costs[..], residuals);
+                let descents = Descents::new(n, self.initial.clone(), told, &mut rng);
                 self.search(&costs);
                 self.state.descents = Some(Box::new(descents));
             }

@@ -37,8 +37,13 @@ fn fcmaes_crate(n: usize) {
     let mut left = EVALUATIONS;
     for runid in 0.. {
         let popsize = 4 + (3.0 * (n as f64).ln()) as i32;
-        let settings =
-            CmaesParams { popsize, max_evaluations: left, seed: 1, runid, ..CmaesParams::default() };
+        let settings = CmaesParams {
+            popsize,
+            max_evaluations: left,
+            seed: 1,
+            runid,
+            ..CmaesParams::default()
+        };
         let mut search = fcmaes_cma((&lower, &upper), &vec![2.0; n], 2.0, &settings);
         left = left.saturating_sub(search.optimize(&valley, 1).evaluations.max(1));
         if left == 0 {

@@ -26,8 +26,7 @@ pub fn run_told(method: &dyn Method, case: &Case, seed: u64, tally: &Tally<'_>) 
             optimizer.tell(&costs)?;
             continue;
         }
-        let residuals: Vec<Vec<f64>> =
-            optimizer.ask().rows().map(|x| tally.residuals(x)).collect();
+        let residuals: Vec<Vec<f64>> = optimizer.ask().rows().map(|x| tally.residuals(x)).collect();
         let costs: Vec<f64> = residuals.iter().map(|r| r.iter().map(|r| r * r).sum()).collect();
         optimizer.tell_residuals(&costs, &residuals)?;
     }
