@@ -16,7 +16,8 @@ const WIDTHS: (f64, f64) = (2e-2, 1e-6);
 const NARROWER: f64 = 0.1;
 /// Damping of the first step, and the least one.
 const DAMPING: (f64, f64) = (0.1, 1e-9);
-/// Longest change of a component in one step, as a share of the domain's width: slopes do not hold farther.
+/// Longest change of a component in one step, as a share of the domain's width: slopes do not hold farther, and a longer step
+/// is shortened.
 const LONGEST: f64 = 0.2;
 /// Relative fall of the cost that counts as leading down.
 const WORTHWHILE: f64 = 1e-3;
@@ -110,20 +111,19 @@ impl Descent {
             Asked::Differences(points) => {
                 self.set_slopes(&points, costs, residuals);
                 self.take_best(&points, costs, residuals);
-                if !self.is_hopeless(lowest) {
+                if !self.is_over(lowest, ends) {
                     self.go_on();
                 }
             }
             Asked::Step { to, promised } => {
                 let gain = self.cost - costs[0];
                 if gain > 0.0 && residuals[0].len() == self.residuals.len() {
+                    let small = gain < WORTHWHILE * self.cost;
+                    let narrow = small && self.fresh;
                     self.accept(to, costs[0], &residuals[0], promised);
-                    if ends.iter().any(|end| self.is_at(end)) {
-                        return;
-                    }
-                    if gain < WORTHWHILE * self.cost {
+                    if narrow {
                         self.narrow();
-                    } else if gain < POOR * promised {
+                    } else if small || gain < POOR * promised {
                         self.differ();
                     } else {
                         self.go_on();
@@ -162,14 +162,18 @@ impl Descent {
         self.failures = 0;
     }
 
-    fn is_hopeless(&self, lowest: f64) -> bool {
+    /// Whether the slopes here promise too little: beside what it is behind the lowest cost, or to get below the end of
+    /// an earlier descent.
+    fn is_over(&self, lowest: f64, ends: &[End]) -> bool {
         let promised = self.step(DAMPING.1).map_or(0.0, |(_, promised)| promised);
-        self.cost > lowest && promised < HOPELESS * (self.cost - lowest)
+        let hopeless = self.cost > lowest && promised < HOPELESS * (self.cost - lowest);
+        let bottom = self.cost - promised;
+        hopeless
+            || ends.iter().any(|end| self.is_near(end) && bottom >= end.cost * (1.0 - WORTHWHILE))
     }
 
-    fn is_at(&self, end: &End) -> bool {
-        let apart = self.at.iter().zip(&end.at).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        apart < NEAR && self.cost >= end.cost * (1.0 - WORTHWHILE)
+    fn is_near(&self, end: &End) -> bool {
+        self.at.iter().zip(&end.at).all(|(here, there)| (here - there).abs() < NEAR)
     }
 
     /// Goes to the best of `points` if that is lower; whether it is.
@@ -246,9 +250,10 @@ impl Descent {
             normal[(j, j)] = normal[(j, j)] * (1.0 + damping) + 1e-15 * largest + f64::MIN_POSITIVE;
         }
         let change = normal.cholesky()?.solve(&moment.select_rows(&active));
+        let shorter = (LONGEST / change.amax()).min(1.0);
         let mut to = self.at.clone();
         for (j, change) in active.iter().zip(change.iter()) {
-            to[*j] = (to[*j] + change.clamp(-LONGEST, LONGEST)).clamp(0.0, 1.0);
+            to[*j] = (to[*j] + shorter * change).clamp(0.0, 1.0);
         }
         let moved =
             DVector::from_iterator(to.len(), to.iter().zip(&self.at).map(|(to, at)| to - at));
