@@ -148,3 +148,14 @@ fn residuals_that_fail_or_panic_are_counted_and_gone_around() {
     let found = least_squares(&nowhere, Budget::evaluations(500), 1).unwrap();
     assert!(found.position.is_empty() && found.failures.non_finite == found.evaluations);
 }
+
+#[test]
+fn a_corner_of_the_domain_and_an_exact_fit_end_a_descent() {
+    let domain = Domain::cube(2, 1.0, 4.0).unwrap();
+    let corner = FnResiduals::new(domain.clone(), |x: &[f64]| vec![x[0], x[1] * x[0]]);
+    let found = least_squares(&corner, Budget::evaluations(300), 1).unwrap();
+    assert_eq!((found.position, found.cost), (vec![1.0, 1.0], 2.0));
+    let line = FnResiduals::new(domain, |x: &[f64]| vec![x[0] - 2.0, x[1] - 3.0]);
+    let found = least_squares(&line, Budget::evaluations(300), 1).unwrap();
+    assert!(found.cost < 1e-20 && found.evaluations > 250, "{found:?}");
+}

@@ -40,7 +40,8 @@ use crate::{Algorithm, ConfigError, Method, Scalar, Start};
 /// To these come, each an [`Ingredient`] that can be left out: negative weights of bad children, a
 /// quadratic model of the cost that takes the place of evaluations while it ranks well, a search
 /// along the components where the cost is a sum over them (told by two evaluations where it is not),
-/// descents on the residuals where the problem tells them ([`crate::Problem::as_least_squares`]), and three regimes of lineages that share the evaluations: large ones, small ones, and populations of
+/// descents on the residuals where the problem tells them ([`crate::Problem::as_least_squares`]), and
+/// three regimes of lineages that share the evaluations: large ones, small ones, and populations of
 /// individuals by the rules of [`crate::Aep::practical`].
 ///
 /// | setting | default | meaning |

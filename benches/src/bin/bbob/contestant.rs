@@ -36,11 +36,12 @@ impl Contestant {
         Ok(Self { name: name.into(), kind })
     }
 
-    /// `aep-lineages`, and what it is without each of its ingredients.
+    /// `aep-lineages`, and what it is without each of its ingredients that counts here: BBOB tells no residuals.
     pub fn ablation() -> Vec<Self> {
         let ours = |name: String, method| Self { name, kind: Kind::Ours(Box::new(method)) };
         let mut all = vec![ours("aep-lineages".into(), Lineages::default())];
-        for ingredient in Ingredient::ALL {
+        let counts = |ingredient: &Ingredient| *ingredient != Ingredient::Descents;
+        for ingredient in Ingredient::ALL.into_iter().filter(counts) {
             let method = Lineages::default().without(ingredient);
             all.push(ours(format!("without {}", ingredient.name()), method));
         }
