@@ -80,7 +80,7 @@ const RULES: &[Rule] = &[
     Rule {
         holds: |_, _| true,
         method: "aep-lineages",
-        why: "needs the fewest evaluations on most fits",
+        why: "needs the fewest evaluations of these methods on most fits",
     },
 ];
 
