@@ -37,10 +37,12 @@ impl Ration {
         self.left += EARNED * evaluations as f64;
     }
 
-    fn take(&mut self, evaluations: f64) -> bool {
-        let enough = self.left >= evaluations;
-        self.left -= if enough { evaluations } else { 0.0 };
-        enough
+    fn is_left(&self) -> bool {
+        self.left > 0.0
+    }
+
+    fn take(&mut self, evaluations: u64) {
+        self.left -= evaluations as f64;
     }
 }
 
@@ -74,13 +76,14 @@ impl Guess {
 
     /// The model, and to how many entries it was fitted; none where there is too little, or the ration is used up.
     pub fn model(&mut self, frame: &Distribution, ration: &mut Ration) -> Option<(&Model, u64)> {
-        let pause = 1 + (coefficients(frame.dimension()) as u64).pow(3) / WORK_PER_ENTRY;
+        let pause = |model: &Model| 1 + (model.coefficients() as u64).pow(3) / WORK_PER_ENTRY;
         let new = self.archive.noted() - self.fitted;
-        if new >= pause || new > 0 && self.model.is_none() {
+        if new >= self.model.as_ref().map_or(1, pause) {
             self.fitted = self.archive.noted();
             self.values.clear();
-            let latest = || self.archive.latest(entries(frame.dimension()));
-            self.model = if ration.take(pause as f64) { Model::fit(frame, latest()) } else { None };
+            let latest = self.archive.latest(entries(frame.dimension()));
+            self.model = if ration.is_left() { Model::fit(frame, latest) } else { None };
+            ration.take(self.model.as_ref().map_or(0, pause));
         }
         self.model.as_ref().map(|model| (model, self.fitted))
     }

@@ -123,6 +123,11 @@ impl Model {
         Some(Self { frame: frame.clone(), whitening, terms, coefficients: moment })
     }
 
+    /// How many coefficients it has.
+    pub fn coefficients(&self) -> usize {
+        self.coefficients.len()
+    }
+
     /// What the cost at `position` is expected to be.
     pub fn value(&self, position: &[f64]) -> f64 {
         let (mut apart, mut v) = (vec![0.0; position.len()], vec![0.0; position.len()]);
