@@ -48,6 +48,21 @@ pub trait Algorithm<T: Scalar = f64>: Send {
     /// before then.
     fn tell(&mut self, costs: &[T]) -> Result<(), TellError>;
 
+    /// Whether the positions of the next [`Algorithm::ask`] are wanted with their residuals.
+    fn wants_residuals(&self) -> bool {
+        false
+    }
+
+    /// The same as [`Algorithm::tell`] with the residuals of each position, where the problem has them: an empty row
+    /// where there are none.
+    ///
+    /// # Errors
+    /// As [`Algorithm::tell`].
+    fn tell_residuals(&mut self, costs: &[T], residuals: &[Vec<f64>]) -> Result<(), TellError> {
+        let _ = residuals;
+        self.tell(costs)
+    }
+
     /// The best position so far; none before the first [`Algorithm::tell`].
     fn best(&self) -> Option<Best<'_, T>>;
 

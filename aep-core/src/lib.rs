@@ -150,7 +150,7 @@ pub use engine::Engine;
 pub use error::{ConfigError, TellError};
 pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
 pub use least_squares::{
-    FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, polish,
+    FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, least_squares, polish,
 };
 pub use lineages::{Ingredient, Lineages};
 pub use meta_ep::{

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::{Batch, Domain, Scalar};
+use crate::{Batch, Domain, LeastSquares, Scalar};
 
 /// A task: find the position in [`Problem::domain`] with the smallest cost.
 ///
@@ -58,6 +58,12 @@ pub trait Problem<T: Scalar = f64>: Sync {
     /// left): its costs are then not told, and the run ends as interrupted, as it stood before that generation.
     fn is_broken_off(&self) -> bool {
         false
+    }
+
+    /// The same task by its residuals, where the cost is the sum of their squares: a method that descends by them is
+    /// told them.
+    fn as_least_squares(&self) -> Option<&dyn LeastSquares> {
+        None
     }
 
     /// What tells this problem from others of the same domain: its name, its data, its settings. A
@@ -166,6 +172,10 @@ impl<T: Scalar, P: Problem<T> + ?Sized> Problem<T> for &P {
 
     fn is_broken_off(&self) -> bool {
         (**self).is_broken_off()
+    }
+
+    fn as_least_squares(&self) -> Option<&dyn LeastSquares> {
+        (**self).as_least_squares()
     }
 
     fn identity(&self) -> String {

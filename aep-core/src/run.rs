@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::{self, RunState};
+use crate::least_squares::Noted;
 use crate::{
     Algorithm, Budget, CheckpointError, Evaluator, Failures, Outcome, Problem, Progress, Scalar,
     StopReason, TellError,
@@ -47,15 +48,24 @@ impl<T: Scalar> Run<T> {
         problem: &dyn Problem<T>,
         evaluator: &dyn Evaluator<T>,
     ) -> Result<bool, TellError> {
+        let squares = problem.as_least_squares().filter(|_| algorithm.wants_residuals());
+        let noted = squares.map(|squares| Noted::new(problem, squares));
         let points = algorithm.ask();
         self.costs.resize(points.len(), T::infinity());
-        let failures = evaluator.evaluate(problem, points, &mut self.costs);
+        let asked = noted.as_ref().map_or(problem, |noted| noted);
+        let failures = evaluator.evaluate(asked, points, &mut self.costs);
         self.ledger.elapsed = self.earlier + self.started.elapsed();
         if problem.is_broken_off() {
             return Ok(false);
         }
         self.ledger.failures.add(failures);
-        algorithm.tell(&self.costs)?;
+        match noted {
+            Some(noted) => {
+                let residuals = noted.of(points);
+                algorithm.tell_residuals(&self.costs, &residuals)?;
+            }
+            None => algorithm.tell(&self.costs)?,
+        }
         self.ledger.evaluations += self.costs.len() as u64;
         Ok(true)
     }

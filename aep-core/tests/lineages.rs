@@ -35,12 +35,12 @@ fn evaluations(problem: &dyn Problem, method: &Lineages, target: f64) -> Vec<u64
     all
 }
 
-/// Medians of ten are about 300 and 600 with the model, 1,300 and 2,000 without; the limits are twice that.
+/// The sixth of ten are 142 and 410 with the model, 1,258 and 1,802 without; the limits are about twice that.
 #[test]
 fn a_model_saves_more_than_half_of_the_evaluations_on_smooth_costs() {
     let (whole, bare) = (Lineages::default(), Lineages::default().without(Ingredient::Model));
     for (problem, target, most) in
-        [(&rotated(5) as &dyn Problem, 3.0 + 1e-8, 600), (&valley(5), 1e-8, 1_200)]
+        [(&rotated(5) as &dyn Problem, 3.0 + 1e-8, 300), (&valley(5), 1e-8, 900)]
     {
         let with = evaluations(problem, &whole, target)[5];
         let without = evaluations(problem, &bare, target)[5];

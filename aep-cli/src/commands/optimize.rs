@@ -88,6 +88,9 @@ pub struct Args {
     single: RunArgs,
 }
 
+/// The method that descends on residuals.
+const DESCENDS: &str = "aep-lineages";
+
 /// The results, as written to JSON.
 #[derive(Serialize)]
 struct Comparison {
@@ -147,6 +150,9 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let mut part = table(&comparison);
     part.notes.extend(notes);
+    if matches!(problem, Chosen::Task(_)) && chosen.iter().any(|method| method.name() == DESCENDS) {
+        part.notes.push(format!("{DESCENDS} is told the residuals, all others the sum of their squares"));
+    }
     if problem.known().is_noisy() {
         part.notes.push("costs have noise in them, and so has 'solved'".to_owned());
     }
@@ -229,9 +235,6 @@ fn recommended(args: &Args, problem: &Chosen, notes: &mut Vec<String>) -> Box<dy
     let evaluations = if args.generations.is_some() { 0 } else { args.evaluations };
     let advice = recommend(&problem.facts(), evaluations);
     notes.push(format!("auto: {}, {}", advice.method.name, advice.why));
-    if advice.polish {
-        notes.push("a program that has the residuals begins with aep_core::polish from random places".to_owned());
-    }
     (advice.method.build)(if args.population == 0 { advice.population } else { args.population })
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use aep_core::Scale;
 use aep_problems::Definition;
 use aep_problems::tasks::{self, Task};
+use missing_physics::measurement::quantity::number;
 
 use crate::app::Global;
 use crate::failure::Failure;
@@ -94,8 +95,7 @@ fn about_task(task: &'static Task) -> String {
             Scale::Linear => "linear",
             Scale::Log => "logarithmic",
         };
-        let numbers = [from, to, parameter.truth, *best].map(|value| format!("{value:.5}"));
-        let [from, to, truth, best] = numbers.map(|text| text.trim_end_matches('0').trim_end_matches('.').to_owned());
+        let [from, to, truth, best] = [from, to, parameter.truth, *best].map(number);
         let name = parameter.name.to_owned();
         table.row([name, parameter.unit.to_owned(), from, to, scale.to_owned(), truth, best]);
     }

@@ -1,12 +1,14 @@
 //! Costs that are sums of squares, and the way to the bottom of their valleys.
 
 mod descent;
+mod noted;
 mod polish;
 
 pub use descent::{LevenbergMarquardt, Refined};
+pub(crate) use noted::Noted;
 pub use polish::polish;
 
-use crate::{Batch, Domain, Problem};
+use crate::{Batch, Budget, Domain, Lineages, Outcome, Problem, RunError, minimize};
 
 /// A task whose cost is the sum of squared residuals: a fit of a curve, of a model, of a simulation.
 ///
@@ -42,9 +44,14 @@ pub trait LeastSquares: Sync {
         points.rows().map(|x| self.residuals(x)).collect()
     }
 
-    /// The cost at `x`: the sum of squared residuals. Who overrides it may only scale that.
+    /// The cost of residuals: the sum of their squares. Who overrides it may only scale that.
+    fn cost(&self, residuals: &[f64]) -> f64 {
+        residuals.iter().map(|residual| residual * residual).sum()
+    }
+
+    /// The cost at `x`: that of its residuals. Who overrides it may only scale that, as in [`LeastSquares::cost`].
     fn objective(&self, x: &[f64]) -> f64 {
-        self.residuals(x).iter().map(|residual| residual * residual).sum()
+        self.cost(&self.residuals(x))
     }
 
     /// The costs of many positions: `costs[i]` belongs to `points.row(i)`.
@@ -66,6 +73,10 @@ impl<P: LeastSquares + ?Sized> LeastSquares for &P {
 
     fn residuals_batch(&self, points: Batch<'_>) -> Vec<Vec<f64>> {
         (**self).residuals_batch(points)
+    }
+
+    fn cost(&self, residuals: &[f64]) -> f64 {
+        (**self).cost(residuals)
     }
 
     fn objective(&self, x: &[f64]) -> f64 {
@@ -117,4 +128,36 @@ impl<P: LeastSquares> Problem for SumOfSquares<P> {
     fn evaluate_batch(&self, points: Batch<'_>, costs: &mut [f64]) {
         self.0.objective_batch(points, costs);
     }
+
+    fn as_least_squares(&self) -> Option<&dyn LeastSquares> {
+        Some(&self.0)
+    }
+}
+
+/// Minimises a sum of squares within `budget` on the calling thread: descents on the residuals and a search beside
+/// them, by [`Lineages`]. Every evaluation counts as one, those of finite differences, too.
+///
+/// It is [`minimize`] of [`SumOfSquares`]: a [`crate::Driver`] has the rest (threads, observers, checkpoints, a stop flag).
+///
+/// ```
+/// use aep_core::{Budget, Domain, FnResiduals, least_squares};
+/// // Two decays, from twenty samples.
+/// let domain = Domain::new(vec![0.0, 0.0, 0.0, 0.0], vec![5.0, 5.0, 5.0, 5.0])?;
+/// let sum = |x: &[f64], t: f64| x[0] * (-x[1] * t).exp() + x[2] * (-x[3] * t).exp();
+/// let decays = FnResiduals::new(domain, |x: &[f64]| {
+///     (0..20).map(|i| f64::from(i) / 4.0).map(|t| sum(x, t) - sum(&[2.0, 0.5, 1.0, 3.0], t)).collect()
+/// });
+/// let found = least_squares(&decays, Budget::evaluations(2_000).with_target(1e-12), 1)?;
+/// assert!(found.cost <= 1e-12 && found.evaluations < 500);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`minimize`].
+pub fn least_squares<P: LeastSquares + ?Sized>(
+    problem: &P,
+    budget: Budget,
+    seed: u64,
+) -> Result<Outcome, RunError> {
+    minimize(&SumOfSquares(problem), &Lineages::default(), budget, seed)
 }

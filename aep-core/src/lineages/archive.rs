@@ -12,11 +12,8 @@ pub(super) struct Archive {
 }
 
 impl Archive {
-    /// Notes a finite cost, and forgets the oldest entries beyond `most`.
+    /// Notes a cost, and forgets the oldest entries beyond `most`.
     pub fn note(&mut self, position: &[f64], cost: f64, most: usize) {
-        if !cost.is_finite() {
-            return;
-        }
         self.positions.extend_from_slice(position);
         self.costs.push(cost);
         self.noted += 1;

@@ -65,10 +65,23 @@ impl Distribution {
 
     /// The z that leads to `position`.
     pub fn whiten(&self, position: &[f64], z: &mut [f64]) {
-        for ((z, x), mean) in z.iter_mut().zip(position).zip(&self.mean) {
-            *z = (x - mean) / self.sigma;
-        }
+        self.apart(position, z);
+        z.iter_mut().for_each(|z| *z /= self.sigma);
         self.factor.solve(z);
+    }
+
+    /// `position` less the mean.
+    pub fn apart(&self, position: &[f64], apart: &mut [f64]) {
+        for ((apart, x), mean) in apart.iter_mut().zip(position).zip(&self.mean) {
+            *apart = x - mean;
+        }
+    }
+
+    /// What takes a position less the mean to `share` of its z.
+    pub fn whitening(&self, share: f64) -> Lower {
+        let mut whitening = self.factor.inverse();
+        whitening.scale(share / self.sigma);
+        whitening
     }
 
     /// Adapts to the children of a generation, the best first.

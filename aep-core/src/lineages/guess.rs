@@ -12,12 +12,13 @@ const MOST_COMPONENTS: usize = 20;
 const BELIEVED: f64 = 0.8;
 /// Entries that a belief is founded on, at least.
 const FOUNDED: usize = 15;
-/// A model of this many coefficients more waits for another entry before it is fitted again.
-const COEFFICIENTS_PER_ENTRY: u64 = 22;
+/// Third power of its coefficients, about the multiplications of a fit, that each entry pays for: a model is fitted again
+/// once there are enough new ones.
+const WORK_PER_ENTRY: u64 = 16_000;
 /// Evaluations with a model that a run has at the start, per component, ...
 const FIRST_RATION: f64 = 200.0;
 /// ... and what each evaluation adds.
-const EARNED: f64 = 0.02;
+const EARNED: f64 = 0.01;
 
 /// The evaluations that a run still may accompany with fits. A fit takes far longer than drawing a child:
 /// without a limit it would be what a run on a cheap cost spends its time on, long after the model has ceased to
@@ -36,10 +37,12 @@ impl Ration {
         self.left += EARNED * evaluations as f64;
     }
 
-    fn take(&mut self, evaluations: f64) -> bool {
-        let enough = self.left >= evaluations;
-        self.left -= if enough { evaluations } else { 0.0 };
-        enough
+    fn is_left(&self) -> bool {
+        self.left > 0.0
+    }
+
+    fn take(&mut self, evaluations: u64) {
+        self.left -= evaluations as f64;
     }
 }
 
@@ -50,6 +53,9 @@ pub(super) struct Guess {
     model: Option<Model>,
     /// Entries noted when the model was fitted.
     fitted: u64,
+    /// What the model makes of the latest entries, once it was asked.
+    #[serde(skip)]
+    values: Vec<f64>,
 }
 
 impl Guess {
@@ -59,31 +65,40 @@ impl Guess {
     }
 
     pub fn note(&mut self, position: &[f64], cost: f64) {
+        if !cost.is_finite() {
+            return;
+        }
         self.archive.note(position, cost, entries(position.len()));
+        if let Some(model) = self.model.as_ref().filter(|_| !self.values.is_empty()) {
+            self.values.push(model.value(position));
+        }
     }
 
-    /// The model of all that was noted; none where there is too little, or the ration is used up.
-    pub fn model(&mut self, frame: &Distribution, ration: &mut Ration) -> Option<&Model> {
-        let pause = 1 + coefficients(frame.dimension()) as u64 / COEFFICIENTS_PER_ENTRY;
+    /// The model, and to how many entries it was fitted; none where there is too little, or the ration is used up.
+    pub fn model(&mut self, frame: &Distribution, ration: &mut Ration) -> Option<(&Model, u64)> {
+        let pause = |model: &Model| 1 + (model.coefficients() as u64).pow(3) / WORK_PER_ENTRY;
         let new = self.archive.noted() - self.fitted;
-        if new >= pause || new > 0 && self.model.is_none() {
+        if new >= self.model.as_ref().map_or(1, pause) {
             self.fitted = self.archive.noted();
-            let latest = || self.archive.latest(entries(frame.dimension()));
-            self.model = if ration.take(pause as f64) { Model::fit(frame, latest()) } else { None };
+            self.values.clear();
+            let latest = self.archive.latest(entries(frame.dimension()));
+            self.model = if ration.is_left() { Model::fit(frame, latest) } else { None };
+            ration.take(self.model.as_ref().map_or(0, pause));
         }
-        self.model.as_ref()
+        self.model.as_ref().map(|model| (model, self.fitted))
     }
 
     /// Whether the model ranks what was evaluated last as it is, `evaluated` of them in this generation
     /// of `lambda`.
-    pub fn is_believed(&self, evaluated: usize, lambda: usize) -> bool {
+    pub fn is_believed(&mut self, evaluated: usize, lambda: usize) -> bool {
+        let Some(model) = &self.model else { return false };
         let recent = (1.2 * evaluated as f64).min(0.75 * lambda as f64) as usize;
-        let latest = || self.archive.latest(recent.max(FOUNDED));
-        let costs: Vec<f64> = latest().map(|(_, cost)| cost).collect();
-        self.model.as_ref().is_some_and(|model| {
-            let values: Vec<f64> = latest().map(|(position, _)| model.value(position)).collect();
-            kendall(&costs, &values) >= BELIEVED
-        })
+        let latest: Vec<_> = self.archive.latest(recent.max(FOUNDED)).collect();
+        if self.values.len() < latest.len() {
+            self.values = latest.iter().map(|(position, _)| model.value(position)).collect();
+        }
+        let costs: Vec<f64> = latest.iter().map(|(_, cost)| *cost).collect();
+        kendall(&costs, &self.values[self.values.len() - latest.len()..]) >= BELIEVED
     }
 }
 

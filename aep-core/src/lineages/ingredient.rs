@@ -23,6 +23,8 @@ pub enum Ingredient {
     Model,
     /// The search along components where the cost is a sum over them.
     Components,
+    /// Descents on the residuals, where the problem tells them.
+    Descents,
     /// Lineages of few children and short first steps.
     SmallLineages,
     /// Lineages of more and more children.
@@ -33,13 +35,14 @@ pub enum Ingredient {
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Direction,
         Self::Age,
         Self::Contest,
         Self::NegativeWeights,
         Self::Model,
         Self::Components,
+        Self::Descents,
         Self::SmallLineages,
         Self::LargeLineages,
         Self::Populations,
@@ -53,6 +56,7 @@ impl Ingredient {
             Self::NegativeWeights => "negative-weights",
             Self::Model => "model",
             Self::Components => "components",
+            Self::Descents => "descents",
             Self::SmallLineages => "small-lineages",
             Self::LargeLineages => "large-lineages",
             Self::Populations => "populations",

@@ -61,6 +61,8 @@ struct Children {
     /// One row each: what was drawn from N(0, 1), and the step that it makes.
     z: Vec<f64>,
     steps: Vec<f64>,
+    /// What the model that was fitted to so many entries makes of each.
+    values: Option<(u64, Vec<f64>)>,
 }
 
 /// What a lineage needs of its run.
@@ -129,7 +131,8 @@ impl Lineage {
             next: self.lambda,
         };
         let guess = self.guess.as_mut();
-        if let Some(model) = guess.and_then(|guess| guess.model(&self.distribution, ration)) {
+        let model = guess.and_then(|guess| guess.model(&self.distribution, ration));
+        if let Some((model, _)) = model {
             open.minimum = model.minimum();
             open.next = 1;
         }
@@ -143,7 +146,7 @@ impl Lineage {
     fn draw(&mut self, seed: u64, generation: u64, minimum: Option<&[f64]>) {
         let n = self.distribution.dimension();
         let streams = Streams::new(seed, Purpose::Mutation, generation);
-        let Children { z, steps } = &mut self.children;
+        let Children { z, steps, .. } = &mut self.children;
         z.resize(n * self.lambda, 0.0);
         steps.resize(n * self.lambda, 0.0);
         for (i, z) in z.chunks_exact_mut(n).enumerate() {
@@ -166,14 +169,21 @@ impl Lineage {
     /// What the model makes of each child.
     fn values(&mut self, ration: &mut Ration) -> Option<Vec<f64>> {
         let n = self.distribution.dimension();
-        let model = self.guess.as_mut()?.model(&self.distribution, ration)?;
+        let (model, fitted) = self.guess.as_mut()?.model(&self.distribution, ration)?;
+        if let Some((of, values)) = &self.children.values
+            && *of == fitted
+        {
+            return Some(values.clone());
+        }
         let mut position = Vec::with_capacity(n);
         let value = |step: &[f64]| {
             position.clear();
             position.extend(self.distribution.position(step));
             model.value(&position)
         };
-        Some(self.children.steps.chunks_exact(n).map(value).collect())
+        let values: Vec<f64> = self.children.steps.chunks_exact(n).map(value).collect();
+        self.children.values = Some((fitted, values.clone()));
+        Some(values)
     }
 
     /// Takes the costs of what was asked; one that failed is infinite.
@@ -203,7 +213,7 @@ impl Lineage {
             open.evaluated.iter().for_each(|(child, cost)| ranks[*child] = *cost);
         } else {
             let values = self.values(ration);
-            let guess = self.guess.as_ref()?;
+            let guess = self.guess.as_mut()?;
             let Some(values) = values else {
                 open.next = open.waiting.len();
                 return None;

@@ -3,6 +3,8 @@
 mod archive;
 mod companions;
 mod components;
+mod descent;
+mod descents;
 mod distribution;
 mod exchange;
 mod guess;
@@ -38,7 +40,8 @@ use crate::{Algorithm, ConfigError, Method, Scalar, Start};
 /// To these come, each an [`Ingredient`] that can be left out: negative weights of bad children, a
 /// quadratic model of the cost that takes the place of evaluations while it ranks well, a search
 /// along the components where the cost is a sum over them (told by two evaluations where it is not),
-/// and three regimes of lineages that share the evaluations: large ones, small ones, and populations of
+/// descents on the residuals where the problem tells them ([`crate::Problem::as_least_squares`]), and
+/// three regimes of lineages that share the evaluations: large ones, small ones, and populations of
 /// individuals by the rules of [`crate::Aep::practical`].
 ///
 /// | setting | default | meaning |
@@ -46,6 +49,10 @@ use crate::{Algorithm, ConfigError, Method, Scalar, Start};
 /// | population | 0: 4 + 3 ln n | children of a generation of the first lineage, at least 4 |
 /// | `sigma` | 0.2 | first step size in widths of the domain |
 /// | [`Ingredient`] | all | what is left out |
+///
+/// **Residuals.** Descents by Levenberg-Marquardt come first, from the best of as many random places as a generation has
+/// children; after 100 n evaluations they and the search get as many each, and every second descent begins at the best that
+/// the search has found since. Where differences mislead (a rough, noisy or discontinuous cost) the search is what finds.
 ///
 /// It works in search coordinates scaled to the domain's width and mirrors what leaves the domain back
 /// into it. The first generation is the same random population that the other methods start from.

@@ -1,9 +1,11 @@
 //! A quadratic model of the cost.
 
+use std::array;
+
 use serde::{Deserialize, Serialize};
 
 use super::distribution::Distribution;
-use super::triangular::{self, Lower};
+use super::triangular::{self, Lower, TOGETHER};
 
 /// Entries per coefficient that a model needs.
 const NEEDED: f64 = 1.1;
@@ -59,6 +61,8 @@ pub(super) fn coefficients(n: usize) -> usize {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Model {
     frame: Distribution,
+    /// From a position less the mean of the frame to v.
+    whitening: Lower,
     terms: Terms,
     coefficients: Vec<f64>,
 }
@@ -87,11 +91,14 @@ impl Model {
         if high <= low {
             return None;
         }
+        let whitening = frame.whitening(1.0 / (n as f64).sqrt());
         let (mut gram, mut moment) = (Lower::zeros(m), vec![0.0; m]);
-        let mut v = vec![0.0; n];
-        let (mut rows, mut weights) = (Vec::with_capacity(4 * m), Vec::with_capacity(4));
+        let (mut apart, mut v) = (vec![0.0; n], vec![0.0; n]);
+        let (mut rows, mut weights) =
+            (Vec::with_capacity(TOGETHER * m), Vec::with_capacity(TOGETHER));
         for (rank, (position, cost)) in entries.iter().enumerate() {
-            place(frame, position, &mut v);
+            frame.apart(position, &mut apart);
+            whitening.multiply(&apart, &mut v);
             let worse = rank as f64 / (entries.len() - 1) as f64;
             let far = 1.0 + triangular::dot(&v, &v) / NEAR;
             let weight = (BEST_WEIGHT + (1.0 - BEST_WEIGHT) * worse) / (far * far);
@@ -99,9 +106,9 @@ impl Model {
             weights.push(weight);
             let row = &rows[rows.len() - m..];
             triangular::add_scaled(&mut moment, row, weight * (cost - low) / (high - low));
-            if weights.len() == 4 {
+            if weights.len() == TOGETHER {
                 let row = |k: usize| &rows[k * m..(k + 1) * m];
-                gram.add_four_squares([0, 1, 2, 3].map(row), [0, 1, 2, 3].map(|k| weights[k]));
+                gram.add_squares(array::from_fn(row), array::from_fn(|k| weights[k]));
                 rows.clear();
                 weights.clear();
             }
@@ -113,13 +120,19 @@ impl Model {
         let factor = gram.factored()?;
         factor.solve(&mut moment);
         factor.solve_transposed(&mut moment);
-        Some(Self { frame: frame.clone(), terms, coefficients: moment })
+        Some(Self { frame: frame.clone(), whitening, terms, coefficients: moment })
+    }
+
+    /// How many coefficients it has.
+    pub fn coefficients(&self) -> usize {
+        self.coefficients.len()
     }
 
     /// What the cost at `position` is expected to be.
     pub fn value(&self, position: &[f64]) -> f64 {
-        let mut v = vec![0.0; position.len()];
-        place(&self.frame, position, &mut v);
+        let (mut apart, mut v) = (vec![0.0; position.len()], vec![0.0; position.len()]);
+        self.frame.apart(position, &mut apart);
+        self.whitening.multiply(&apart, &mut v);
         let mut row = Vec::with_capacity(self.coefficients.len());
         self.terms.write(&v, &mut row);
         triangular::dot(&row, &self.coefficients)
@@ -150,15 +163,6 @@ impl Model {
         self.frame.step(&z, &mut step);
         let position: Vec<f64> = self.frame.position(&step).collect();
         position.iter().all(|x| x.is_finite()).then_some(position)
-    }
-}
-
-/// v of a position.
-fn place(frame: &Distribution, position: &[f64], v: &mut [f64]) {
-    frame.whiten(position, v);
-    let root = (v.len() as f64).sqrt();
-    for v in v.iter_mut() {
-        *v /= root;
     }
 }
 

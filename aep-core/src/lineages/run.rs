@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::companions::Companions;
 use super::components::ComponentSearch;
+use super::descent::End;
+use super::descents::Descents;
 use super::exchange::{Exchange, Verdict};
 use super::guess::Ration;
 use super::lineage::{Lineage, Setting};
@@ -44,6 +46,14 @@ struct State<T: Scalar> {
     schedule: Schedule,
     ration: Ration,
     best: BestSoFar<T>,
+    /// Where the problem has residuals.
+    descents: Option<Box<Descents>>,
+}
+
+impl<T: Scalar> State<T> {
+    fn lowest(&self) -> f64 {
+        self.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64())
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -80,6 +90,7 @@ impl<T: Scalar> Run<T> {
                 schedule: Schedule::new(n, lambda),
                 ration: Ration::new(n),
                 best: BestSoFar::new(n),
+                descents: None,
             },
         })
     }
@@ -139,6 +150,40 @@ impl<T: Scalar> Run<T> {
         })
     }
 
+    /// Whether descents are asked next, not the search.
+    fn descents_next(&self) -> bool {
+        self.state.descents.as_ref().is_some_and(|descents| descents.are_next())
+    }
+
+    /// Notes the best of what was asked; costs as the search takes them.
+    fn note(&mut self, costs: &[T]) -> Vec<f64> {
+        let points = &self.points;
+        self.state.best.note(costs, |i, x| x.copy_from_slice(points.row(i)));
+        let usable = |cost: &T| if cost.is_finite() { cost.as_f64() } else { f64::INFINITY };
+        costs.iter().map(usable).collect()
+    }
+
+    /// Takes costs into the search.
+    fn search(&mut self, costs: &[f64]) {
+        if let Some(descents) = &mut self.state.descents {
+            let best = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
+            let best = best.filter(|best| costs[*best].is_finite()).map(|best| {
+                let mut search = vec![T::zero(); self.domain.dimension()];
+                self.domain.encode(self.points.row(best), &mut search);
+                End { at: Cube::shares(&self.domain, &search), cost: costs[best] }
+            });
+            descents.note(costs.len(), best);
+        }
+        let ended = self.advance(costs);
+        self.state.told += 1;
+        if let Some(spent) = ended {
+            match self.begin_next(spent) {
+                Ok(phase) => self.state.phase = phase,
+                Err(error) => self.exhausted = Some(error.to_string()),
+            }
+        }
+    }
+
     /// Takes costs into the present phase; the evaluations of one that has ended.
     fn advance(&mut self, costs: &[f64]) -> Option<u64> {
         let epsilon = T::epsilon().as_f64();
@@ -185,8 +230,7 @@ impl<T: Scalar> Run<T> {
 }
 
 fn setting<'a, T: Scalar>(config: &'a Lineages, seed: u64, state: &State<T>) -> Setting<'a> {
-    let lowest = state.best.get().map_or(f64::INFINITY, |best| best.cost.as_f64());
-    Setting { config, seed, generation: state.told, lowest }
+    Setting { config, seed, generation: state.told, lowest: state.lowest() }
 }
 
 impl<T: Scalar> Algorithm<T> for Run<T> {
@@ -204,9 +248,16 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
 
     fn ask(&mut self) -> Batch<'_, T> {
         if self.turn.ask() {
+            self.drawn.clear();
+            if self.descents_next() {
+                self.drawn.extend_from_slice(
+                    self.state.descents.as_ref().map_or(&[], |descents| descents.asked()),
+                );
+                self.place();
+                return self.points.batch();
+            }
             let setting = setting(&self.config, self.seed, &self.state);
             let (ration, drawn) = (&mut self.state.ration, &mut self.drawn);
-            drawn.clear();
             match &mut self.state.phase {
                 Phase::Initial => drawn.extend_from_slice(&self.initial),
                 Phase::Exchange(exchange, _) => {
@@ -224,16 +275,43 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
 
     fn tell(&mut self, costs: &[T]) -> Result<(), TellError> {
         self.turn.tell(costs.len(), self.points.len())?;
-        let points = &self.points;
-        self.state.best.note(costs, |i, x| x.copy_from_slice(points.row(i)));
-        let usable = |cost: &T| if cost.is_finite() { cost.as_f64() } else { f64::INFINITY };
-        let costs: Vec<f64> = costs.iter().map(usable).collect();
-        let ended = self.advance(&costs);
-        self.state.told += 1;
-        if let Some(spent) = ended {
-            match self.begin_next(spent) {
-                Ok(phase) => self.state.phase = phase,
-                Err(error) => self.exhausted = Some(error.to_string()),
+        let costs = self.note(costs);
+        if self.descents_next() {
+            // Whoever evaluates has no residuals after all.
+            self.state.descents = None;
+            self.state.told += 1;
+        } else {
+            self.search(&costs);
+        }
+        Ok(())
+    }
+
+    fn wants_residuals(&self) -> bool {
+        let first = matches!(self.state.phase, Phase::Initial);
+        first && self.config.uses(Ingredient::Descents) || self.descents_next()
+    }
+
+    fn tell_residuals(&mut self, costs: &[T], residuals: &[Vec<f64>]) -> Result<(), TellError> {
+        if !self.wants_residuals()
+            || residuals.iter().all(Vec::is_empty) && self.state.descents.is_none()
+        {
+            return self.tell(costs);
+        }
+        self.turn.tell(costs.len(), self.points.len())?;
+        let costs = self.note(costs);
+        let lowest = self.state.lowest();
+        let mut rng = Streams::new(self.seed, Purpose::Restart, self.state.told).stream(0);
+        match &mut self.state.descents {
+            Some(descents) => {
+                descents.tell(&costs, residuals, lowest, &mut rng);
+                self.state.told += 1;
+            }
+            None => {
+                let n = self.domain.dimension();
+                let told = (&costs[..], residuals);
+                let descents = Descents::new(n, self.initial.clone(), told, &mut rng);
+                self.search(&costs);
+                self.state.descents = Some(Box::new(descents));
             }
         }
         Ok(())

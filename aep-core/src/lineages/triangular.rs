@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 const MOST_CONDITION: f64 = 1e14;
 /// Numbers that are multiplied side by side.
 const LANES: usize = 8;
+/// Squares of vectors that are added in one pass.
+pub(super) const TOGETHER: usize = 8;
 
 /// A lower triangle: row r has its entries 0..=r.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -36,7 +38,8 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
             sums[lane] += a[lane] * b[lane];
         }
     }
-    sums.iter().sum::<f64>() + rest
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + e) + (b + f)) + ((c + g) + (d + h)) + rest
 }
 
 /// `sum += factor row`.
@@ -62,14 +65,22 @@ fn add_square(entries: &mut [f64], v: &[f64], factor: f64) {
 }
 
 #[multiversion(targets("x86_64+avx2"))]
-fn add_four_squares(entries: &mut [f64], v: [&[f64]; 4], factors: [f64; 4]) {
+fn add_squares(entries: &mut [f64], v: [&[f64]; TOGETHER], factors: [f64; TOGETHER]) {
     let mut rest = entries;
-    for row in 0..v[0].len() {
+    let [a, b, c, d, e, f, g, h] = v;
+    for row in 0..a.len() {
         let (own, below) = rest.split_at_mut(row + 1);
-        let [a, b, c, d] = v.map(|v| &v[..=row]);
-        let f: [f64; 4] = std::array::from_fn(|k| factors[k] * v[k][row]);
-        for (column, own) in own.iter_mut().enumerate() {
-            *own += (f[0] * a[column] + f[1] * b[column]) + (f[2] * c[column] + f[3] * d[column]);
+        let mut w = factors;
+        for (w, v) in w.iter_mut().zip(&v) {
+            *w *= v[row];
+        }
+        let width = own.len();
+        let (a, b, c, d) = (&a[..width], &b[..width], &c[..width], &d[..width]);
+        let (e, f, g, h) = (&e[..width], &f[..width], &g[..width], &h[..width]);
+        for (k, own) in own.iter_mut().enumerate() {
+            let first = (w[0] * a[k] + w[1] * b[k]) + (w[2] * c[k] + w[3] * d[k]);
+            let second = (w[4] * e[k] + w[5] * f[k]) + (w[6] * g[k] + w[7] * h[k]);
+            *own += first + second;
         }
         rest = below;
     }
@@ -139,15 +150,30 @@ impl Lower {
         add_square(&mut self.entries, v, factor);
     }
 
-    /// Adds `factor v v'` of four vectors, in one pass over the entries.
-    pub fn add_four_squares(&mut self, v: [&[f64]; 4], factors: [f64; 4]) {
-        add_four_squares(&mut self.entries, v, factors);
+    /// Adds `factor v v'` of several vectors, in one pass over the entries.
+    pub fn add_squares(&mut self, v: [&[f64]; TOGETHER], factors: [f64; TOGETHER]) {
+        add_squares(&mut self.entries, v, factors);
     }
 
     /// A with A A' = this, if there is one that can be computed with.
     pub fn factored(&self) -> Option<Self> {
         let mut entries = self.entries.clone();
         factor(&mut entries, self.n).then_some(Self { n: self.n, entries })
+    }
+
+    /// A^-1 of a factor.
+    pub fn inverse(&self) -> Self {
+        let mut inverse = Self::zeros(self.n);
+        let mut column = vec![0.0; self.n];
+        for j in 0..self.n {
+            column.fill(0.0);
+            column[j] = 1.0;
+            self.solve(&mut column);
+            for (row, entry) in column.iter().enumerate().skip(j) {
+                inverse.set(row, j, *entry);
+            }
+        }
+        inverse
     }
 
     /// `out = A v`.
@@ -211,7 +237,12 @@ mod tests {
         let v: Vec<f64> = (0..13).map(|j| f64::from(j).cos()).collect();
         let mut product = vec![0.0; 13];
         factor.multiply(&v, &mut product);
+        let mut by_inverse = vec![0.0; 13];
+        factor.inverse().multiply(&product, &mut by_inverse);
         factor.solve(&mut product);
+        for j in 0..13 {
+            assert!((product[j] - by_inverse[j]).abs() < 1e-12);
+        }
         // A A' x = A v has the solution A' x = v.
         let mut x = v.clone();
         factor.solve_transposed(&mut x);

@@ -43,13 +43,10 @@ impl Facts {
 /// What to run.
 #[derive(Clone, Copy)]
 pub struct Advice {
-    /// The method, for a cost of which nothing else is told.
+    /// The method.
     pub method: &'static Named,
     /// Its population; 0 for its own default.
     pub population: usize,
-    /// Whether to begin with [`crate::polish`] from random places, one after the other: where a task gives
-    /// its residuals, that needed fewer evaluations than any search.
-    pub polish: bool,
     /// Why this method, in one line.
     pub why: &'static str,
 }
@@ -66,6 +63,11 @@ struct Rule {
 /// docs/optimizers.md, "Tasks and peers".
 const RULES: &[Rule] = &[
     Rule {
+        holds: |facts, _| facts.residuals,
+        method: "aep-lineages",
+        why: "descends on the residuals, with a search beside it",
+    },
+    Rule {
         holds: |facts, budget| facts.dimension <= 5 && budget >= 5_000,
         method: "de",
         why: "few parameters and many evaluations: it misses the fewest best minima",
@@ -78,7 +80,7 @@ const RULES: &[Rule] = &[
     Rule {
         holds: |_, _| true,
         method: "aep-lineages",
-        why: "needs the fewest evaluations on most fits",
+        why: "needs the fewest evaluations of these methods on most fits",
     },
 ];
 
@@ -86,8 +88,8 @@ const RULES: &[Rule] = &[
 ///
 /// ```
 /// use aep_core::methods::{Facts, recommend};
-/// let advice = recommend(&Facts::new(7).with_residuals().with_width(64), 20_000);
-/// assert!(advice.polish && advice.population == 64);
+/// let advice = recommend(&Facts::new(7).with_width(64), 20_000);
+/// assert_eq!((advice.method.name, advice.population), ("cma-es", 64));
 /// println!("{}: {}", advice.method.name, advice.why);
 /// ```
 pub fn recommend(facts: &Facts, evaluations: u64) -> Advice {
@@ -102,7 +104,7 @@ pub fn recommend(facts: &Facts, evaluations: u64) -> Advice {
         .expect("the last rule holds always and names a method");
     // A generation narrower than what runs at once leaves machines idle.
     let population = if facts.width > USUAL { facts.width } else { 0 };
-    Advice { method, population, polish: facts.residuals, why: rule.why }
+    Advice { method, population, why: rule.why }
 }
 
 /// About what the methods have as their own population.
@@ -126,9 +128,10 @@ mod tests {
     }
 
     #[test]
-    fn residuals_ask_for_descents() {
-        assert!(!recommend(&Facts::new(5), 1_000).polish);
-        assert!(recommend(&Facts::new(5).with_residuals().with_noise(true), 1_000).polish);
+    fn residuals_are_for_the_method_that_descends_on_them() {
+        let few = Facts::new(5).with_noise(true);
+        assert_eq!(recommend(&few, 50_000).method.name, "de");
+        assert_eq!(recommend(&few.with_residuals(), 50_000).method.name, "aep-lineages");
     }
 
     #[test]

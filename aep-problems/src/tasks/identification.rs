@@ -99,8 +99,8 @@ impl LeastSquares for Identification {
         residuals
     }
 
-    fn objective(&self, x: &[f64]) -> f64 {
-        sum_of_squares(&self.residuals(x))
+    fn cost(&self, residuals: &[f64]) -> f64 {
+        sum_of_squares(residuals)
     }
 
     fn objective_batch(&self, points: Batch<'_>, costs: &mut [f64]) {
@@ -127,6 +127,10 @@ impl Problem for Identification {
 
     fn batch_size(&self) -> usize {
         4
+    }
+
+    fn as_least_squares(&self) -> Option<&dyn LeastSquares> {
+        Some(self)
     }
 
     fn identity(&self) -> String {

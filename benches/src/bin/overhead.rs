@@ -9,8 +9,8 @@ use std::time::Instant;
 use aep_core::{
     Budget, CmaEs, Domain, Driver, FnProblem, Ingredient, Lineages, Method, Problem, Start,
 };
-use cmaes::restart::{BIPOP, RestartOptions, RestartStrategy};
-use fcmaes_core::{Cmaes, CmaesParams, Fitness};
+use benches::peers::{cmaes_bipop, fcmaes_cma};
+use fcmaes_core::CmaesParams;
 
 const EVALUATIONS: u64 = 20_000;
 const LIMIT: f64 = 5.0;
@@ -29,28 +29,22 @@ fn ours(method: &dyn Method, n: usize) {
 }
 
 fn cmaes_crate(n: usize) {
-    let strategy = RestartStrategy::BIPOP(BIPOP::default());
-    let restarter = RestartOptions::new(n, -LIMIT..=LIMIT, strategy)
-        .max_function_evals(EVALUATIONS as usize)
-        .seed(1)
-        .build()
-        .expect("valid options");
-    restarter.run_with_reuse(|x: &cmaes::DVector<f64>| valley(x.as_slice()));
+    cmaes_bipop((n, -LIMIT..=LIMIT), EVALUATIONS, None, 1, valley).expect("valid settings");
 }
 
-fn fcmaes_cma(n: usize) {
+fn fcmaes_crate(n: usize) {
     let (lower, upper) = (vec![-LIMIT; n], vec![LIMIT; n]);
     let mut left = EVALUATIONS;
     for runid in 0.. {
-        let parameters = CmaesParams {
-            popsize: 4 + (3.0 * (n as f64).ln()) as i32,
+        let popsize = 4 + (3.0 * (n as f64).ln()) as i32;
+        let settings = CmaesParams {
+            popsize,
             max_evaluations: left,
             seed: 1,
             runid,
             ..CmaesParams::default()
         };
-        let fitness = Fitness::bounded(n, 1, &lower, &upper);
-        let mut search = Cmaes::new(fitness, &vec![2.0; n], &[2.0], &parameters);
+        let mut search = fcmaes_cma((&lower, &upper), &vec![2.0; n], 2.0, &settings);
         left = left.saturating_sub(search.optimize(&valley, 1).evaluations.max(1));
         if left == 0 {
             return;
@@ -79,5 +73,5 @@ fn main() {
     row("aep-lineages without model", &|n| ours(&bare, n));
     row("cma-es", &|n| ours(&CmaEs::default(), n));
     row("cmaes (crate)", &cmaes_crate);
-    row("fcmaes-core CMA-ES", &fcmaes_cma);
+    row("fcmaes-core CMA-ES", &fcmaes_crate);
 }

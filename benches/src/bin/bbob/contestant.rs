@@ -2,8 +2,8 @@
 
 use aep_core::random::{Purpose, Streams, uniform};
 use aep_core::{Domain, Ingredient, Lineages, Method, Start, methods};
-use cmaes::restart::{BIPOP, RestartOptions, RestartStrategy};
-use fcmaes_core::{Cmaes, CmaesParams, Fitness};
+use benches::peers::{cmaes_bipop, fcmaes_cma};
+use fcmaes_core::CmaesParams;
 
 use crate::Result;
 use crate::task::Task;
@@ -36,11 +36,12 @@ impl Contestant {
         Ok(Self { name: name.into(), kind })
     }
 
-    /// `aep-lineages`, and what it is without each of its ingredients.
+    /// `aep-lineages`, and what it is without each of its ingredients that counts here: BBOB tells no residuals.
     pub fn ablation() -> Vec<Self> {
         let ours = |name: String, method| Self { name, kind: Kind::Ours(Box::new(method)) };
         let mut all = vec![ours("aep-lineages".into(), Lineages::default())];
-        for ingredient in Ingredient::ALL {
+        let counts = |ingredient: &Ingredient| *ingredient != Ingredient::Descents;
+        for ingredient in Ingredient::ALL.into_iter().filter(counts) {
             let method = Lineages::default().without(ingredient);
             all.push(ours(format!("without {}", ingredient.name()), method));
         }
@@ -57,7 +58,7 @@ impl Contestant {
             Kind::Ours(method) => ours(&**method, task, seed),
             Kind::CmaesCrate => cmaes_crate(task, seed),
             Kind::FcmaesCma => {
-                fcmaes_cma(task, seed);
+                fcmaes_crate(task, seed);
                 Ok(())
             }
         }
@@ -77,37 +78,29 @@ fn ours(method: &dyn Method, task: &mut Task<'_>, seed: u64) -> Result<()> {
 
 fn cmaes_crate(task: &mut Task<'_>, seed: u64) -> Result<()> {
     let (lower, upper) = task.limits();
-    let strategy = RestartStrategy::BIPOP(BIPOP::default());
-    let restarter = RestartOptions::new(lower.len(), lower[0]..=upper[0], strategy)
-        .fun_target(task.target())
-        .max_function_evals(usize::try_from(task.budget())?)
-        .seed(seed)
-        .build()
-        .map_err(|error| format!("{error:?}"))?;
-    restarter.run_with_reuse(|x: &cmaes::DVector<f64>| task.evaluate(x.as_slice()));
-    Ok(())
+    let (budget, target) = (task.budget(), Some(task.target()));
+    let cube = (lower.len(), lower[0]..=upper[0]);
+    cmaes_bipop(cube, budget, target, seed, |x| task.evaluate(x))
 }
 
 /// First steps of 0.2 of the width, as ours; from a random place, which later runs change.
-fn fcmaes_cma(task: &mut Task<'_>, seed: u64) {
+fn fcmaes_crate(task: &mut Task<'_>, seed: u64) {
     let (lower, upper) = task.limits();
-    let n = lower.len();
-    let first = 4 + (3.0 * (n as f64).ln()) as i32;
+    let first = 4 + (3.0 * (lower.len() as f64).ln()) as i32;
     for run in 0.. {
         let mut rng = Streams::new(seed, Purpose::Restart, run).stream(0);
         let limits = lower.iter().zip(&upper);
         let guess: Vec<f64> =
             limits.map(|(lo, hi)| lo + (hi - lo) * uniform::<f64>(&mut rng)).collect();
-        let parameters = CmaesParams {
+        let settings = CmaesParams {
             popsize: first << run.min(12),
             max_evaluations: task.budget(),
             seed,
             runid: run as i64,
             ..CmaesParams::default()
         };
-        let fitness = Fitness::bounded(n, 1, &lower, &upper);
         let sigma = 0.2 * (upper[0] - lower[0]);
-        let mut search = Cmaes::new(fitness, &guess, &[sigma], &parameters);
+        let mut search = fcmaes_cma((&lower, &upper), &guess, sigma, &settings);
         while search.stop() == 0 {
             let costs: Vec<f64> = search.ask().iter().map(|x| task.evaluate(x)).collect();
             if task.is_over() {

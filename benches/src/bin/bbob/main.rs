@@ -36,7 +36,7 @@ struct Arguments {
         default_value = "aep,aep-practical,aep-practical-restarts,aep-lineages,de,cma-es,cmaes-crate,fcmaes-cma"
     )]
     methods: Vec<String>,
-    /// In place of `--methods`: aep-lineages, whole and without each of its ingredients.
+    /// In place of `--methods`: aep-lineages, whole and without each of its ingredients (there are no residuals here).
     #[arg(long)]
     ablation: bool,
     /// Components.

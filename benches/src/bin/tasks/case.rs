@@ -88,8 +88,9 @@ impl Case {
         per_parameter * self.domain().dimension() as u64
     }
 
-    pub fn seed(trial: usize) -> u64 {
-        Streams::new(1, Purpose::Trial, 0).word(trial)
+    /// The seed of a trial in the table of `seed`.
+    pub fn seed(seed: u64, trial: usize) -> u64 {
+        Streams::new(seed, Purpose::Trial, 0).word(trial)
     }
 
     /// The initial population of a seed, in the cube of width 1.

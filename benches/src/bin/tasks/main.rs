@@ -26,7 +26,7 @@ mod widths;
 
 use std::path::PathBuf;
 
-use aep_core::methods;
+use aep_core::{Lineages, methods};
 use clap::Parser;
 use rayon::prelude::*;
 
@@ -49,6 +49,9 @@ struct Args {
     /// Trials of each
     #[arg(long, default_value_t = 15)]
     trials: usize,
+    /// Seed of the trials: the table is told with 1, methods are tuned with others
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
     /// Evaluations of a trial per parameter
     #[arg(long, default_value_t = 1_000)]
     budget: u64,
@@ -71,6 +74,8 @@ enum Contestant {
     Ours(&'static methods::Named),
     Other(Peer),
     Python(String),
+    /// `aep-lineages`, told the residuals.
+    Told,
     /// [`aep_core::polish`] from one random place after the other.
     Descents,
 }
@@ -81,6 +86,7 @@ impl Contestant {
             Self::Ours(named) => named.name,
             Self::Other(peer) => peer.name(),
             Self::Python(name) => name,
+            Self::Told => result::TOLD,
             Self::Descents => "polish",
         }
     }
@@ -94,6 +100,7 @@ impl Contestant {
             match self {
                 Self::Ours(named) => ours::run(&*(named.build)(0), case, seed, &tally)?,
                 Self::Other(peer) => peer.run(case, seed, &tally)?,
+                Self::Told => ours::run_told(&Lineages::default(), case, seed, &tally)?,
                 Self::Descents => ours::descend(case, seed, &tally)?,
                 Self::Python(name) => pool.run(name, case, seed, &tally)?,
             }
@@ -117,7 +124,7 @@ fn main() -> Result<()> {
     let ours = methods::ALL.iter().map(Contestant::Ours);
     let others = Peer::ALL.into_iter().map(Contestant::Other);
     let contestants = ours.chain(others).chain(python.into_iter().map(Contestant::Python));
-    let contestants = contestants.chain([Contestant::Descents]);
+    let contestants = contestants.chain([Contestant::Told, Contestant::Descents]);
     let asked = |contestant: &Contestant| {
         let kind = match Group::of(contestant.name()) {
             Group::Ours => "ours",
@@ -141,7 +148,7 @@ fn main() -> Result<()> {
             cells.retain(|cell| cell.task != case.name || cell.method != contestant.name());
             let run = |trial: usize| {
                 contestant
-                    .run(case, Case::seed(trial), case.budget(args.budget), &pool)
+                    .run(case, Case::seed(args.seed, trial), case.budget(args.budget), &pool)
                     .map_err(|error| format!("{} on {}: {error}", contestant.name(), case.name))
             };
             let trials: std::result::Result<Vec<Trial>, String> =

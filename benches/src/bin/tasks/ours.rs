@@ -17,6 +17,22 @@ pub fn run(method: &dyn Method, case: &Case, seed: u64, tally: &Tally<'_>) -> Re
     Ok(())
 }
 
+/// The same with the residuals told, where they are wanted.
+pub fn run_told(method: &dyn Method, case: &Case, seed: u64, tally: &Tally<'_>) -> Result<()> {
+    let mut optimizer = method.start(&Start::new(case.domain(), seed))?;
+    while !tally.is_over() && optimizer.exhausted().is_none() {
+        if !optimizer.wants_residuals() {
+            let costs: Vec<f64> = optimizer.ask().rows().map(|x| tally.cost(x)).collect();
+            optimizer.tell(&costs)?;
+            continue;
+        }
+        let residuals: Vec<Vec<f64>> = optimizer.ask().rows().map(|x| tally.residuals(x)).collect();
+        let costs: Vec<f64> = residuals.iter().map(|r| r.iter().map(|r| r * r).sum()).collect();
+        optimizer.tell_residuals(&costs, &residuals)?;
+    }
+    Ok(())
+}
+
 /// A descent on the residuals from the first individual of `seed`.
 pub fn descend(case: &Case, seed: u64, tally: &Tally<'_>) -> Result<()> {
     let start = case.in_domain(&case.population(seed, 1)?[0]);

@@ -14,6 +14,12 @@ pub struct Trial {
     pub solved: bool,
 }
 
+/// `aep-lineages` where it is told the residuals.
+pub const TOLD: &str = "aep-lineages with residuals";
+
+/// The method of others that is told them.
+const PEER: &str = "scipy least_squares";
+
 /// Whose method it is, and what it is told.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
@@ -27,7 +33,7 @@ impl Group {
     /// That of the method called `name`.
     pub fn of(name: &str) -> Self {
         match name {
-            "polish" | "scipy least_squares" => Self::Told,
+            TOLD | "polish" | PEER => Self::Told,
             _ if methods::find(name).is_some() => Self::Ours,
             _ => Self::Others,
         }
@@ -75,12 +81,11 @@ impl Cell {
 
     pub fn in_words(&self) -> String {
         let (low, high) = self.interval();
-        let time = |time: f64| if time.is_finite() { format!("{time:.0}") } else { "-".into() };
-        let expected = time(self.expected());
+        let expected = number(self.expected());
         format!(
             "{expected} ({} .. {}), {} of {}",
-            time(low),
-            time(high),
+            number(low),
+            number(high),
             self.solved(),
             self.trials.len()
         )
@@ -177,11 +182,59 @@ pub fn tables(cells: &[Cell]) -> String {
             other.expected().is_finite().then(|| own.expected() / other.expected())
         };
         let ratios: Vec<f64> = tasks.iter().filter_map(ratio).collect();
-        let count = |of: fn(&f64) -> bool| ratios.iter().filter(|ratio| of(ratio)).count();
         if !ratios.is_empty() {
-            let (quick, slow) = (count(|r| *r <= 1.0), count(|r| *r > 2.0));
-            let _ = writeln!(text, "| {method} | {quick} | {slow} | {} |", ratios.len());
+            let _ = writeln!(text, "| {method} | {} |", counts(&ratios));
         }
     }
+    text.push_str(&told(cells, &tasks));
     text
+}
+
+/// How many are at most 1, and how many more than 2, of how many.
+fn counts(ratios: &[f64]) -> String {
+    let count = |of: fn(&f64) -> bool| ratios.iter().filter(|ratio| of(ratio)).count();
+    format!("{} | {} | {}", count(|r| *r <= 1.0), count(|r| *r > 2.0), ratios.len())
+}
+
+/// The methods that are told the residuals, beside the best of the others that is not, and the best of all others.
+fn told(cells: &[Cell], tasks: &[&str]) -> String {
+    let mut text = String::from("\n## Told the residuals\n\n");
+    let _ = writeln!(
+        text,
+        "| task | {TOLD} | polish | {PEER} | best that sees costs | times that | times the best of all others |\n|---|---|---:|---:|---|---:|---:|"
+    );
+    let (mut of_costs, mut of_all) = (Vec::new(), Vec::new());
+    for task in tasks {
+        let expected = |method| cell(cells, task, method).map_or(f64::INFINITY, Cell::expected);
+        let (Some(own), Some(other)) = (cell(cells, task, TOLD), best(cells, task, Group::Others))
+        else {
+            continue;
+        };
+        let ratio = |rival: f64| own.expected() / rival;
+        let all = expected(PEER).min(other.expected());
+        of_costs.push(ratio(other.expected()));
+        of_all.push(ratio(all));
+        let _ = writeln!(
+            text,
+            "| {task} | {} | {} | {} | {} {} | {:.2} | {:.2} |",
+            own.in_words(),
+            number(expected("polish")),
+            number(expected(PEER)),
+            other.method,
+            number(other.expected()),
+            ratio(other.expected()),
+            ratio(all)
+        );
+    }
+    text.push_str(
+        "\n| beside | at most its evaluations | more than twice | of |\n|---|---:|---:|---:|\n",
+    );
+    let _ = writeln!(text, "| the best that sees costs | {} |", counts(&of_costs));
+    let _ = writeln!(text, "| the best of all others | {} |", counts(&of_all));
+    text
+}
+
+/// Expected evaluations; a dash where there are none.
+pub fn number(expected: f64) -> String {
+    if expected.is_finite() { format!("{expected:.0}") } else { "-".into() }
 }
