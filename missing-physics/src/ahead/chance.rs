@@ -160,6 +160,8 @@ mod tests {
         assert_eq!(chance.p_value(f64::INFINITY), 1e-3);
         assert_eq!(chance.p_value(1e5), 1e-3);
         assert_eq!(chance.p_value(0.0), 1.0);
+        // Every twentieth shift reaches it, and by how gains fall off more do.
+        assert!((chance.p_value(949.0) - 0.1 * (-0.125f64 * 5f64.ln()).exp()).abs() < 1e-9);
         // Where nothing could be shifted nothing is known.
         assert_eq!(Chance::default().p_value(1e9), 1.0);
     }
