@@ -66,7 +66,9 @@ impl Distribution {
     /// The z that leads to `position`.
     pub fn whiten(&self, position: &[f64], z: &mut [f64]) {
         self.apart(position, z);
-        z.iter_mut().for_each(|z| *z /= self.sigma);
+        for share in &mut *z {
+            *share /= self.sigma;
+        }
         self.factor.solve(z);
     }
 

@@ -301,18 +301,15 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
         let costs = self.note(costs);
         let lowest = self.state.lowest();
         let mut rng = Streams::new(self.seed, Purpose::Restart, self.state.told).stream(0);
-        match &mut self.state.descents {
-            Some(descents) => {
-                descents.tell(&costs, residuals, lowest, &mut rng);
-                self.state.told += 1;
-            }
-            None => {
-                let n = self.domain.dimension();
-                let told = (&costs[..], residuals);
-                let descents = Descents::new(n, self.initial.clone(), told, &mut rng);
-                self.search(&costs);
-                self.state.descents = Some(Box::new(descents));
-            }
+        if let Some(descents) = &mut self.state.descents {
+            descents.tell(&costs, residuals, lowest, &mut rng);
+            self.state.told += 1;
+        } else {
+            let n = self.domain.dimension();
+            let told = (&costs[..], residuals);
+            let descents = Descents::new(n, self.initial.clone(), told, &mut rng);
+            self.search(&costs);
+            self.state.descents = Some(Box::new(descents));
         }
         Ok(())
     }

@@ -250,7 +250,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         let as_promised = |from: &Node, term: usize| {
             let screened = self.beside(climb, from);
             let promise = screened.promises.iter().find(|p| self.main(p.term) == self.main(term));
-            promise.map_or(1.0, |promise| screened.chance.p_value(self.in_full(promise.gain)))
+            promise
+                .map_or(1.0, |promise| screened.chance.p_value_of_few(self.in_full(promise.gain)))
         };
         let p_value = p_value.max(as_promised(without, *term));
         let alone = |cost: &(usize, Difference, Node)| as_promised(&climb.base, cost.0);

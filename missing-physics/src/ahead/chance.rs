@@ -57,18 +57,23 @@ impl Chance {
         self.largest.get(place).map_or(f64::NAN, |(gain, _)| *gain)
     }
 
-    /// Chance of a gain at least as large, by the shifts and by how gains fall off among them: never below one over their
-    /// number. The trials that were only ranked, or not asked at a shift, count as so many independent ones (Bonferroni).
+    /// Chance of a gain at least as large, by the shifts: never below one over their number. The trials that were only
+    /// ranked, or not asked at a shift, count as so many independent ones (Bonferroni).
     pub fn p_value(&self, gain: f64) -> f64 {
         let as_large = self.largest.iter().filter(|(other, _)| *other >= gain);
         let as_large: f64 = as_large.map(|(_, trials)| trials).sum();
-        let counted = (as_large + 1.0) / (self.largest.len() + 1) as f64;
+        let share = (as_large + 1.0) / (self.largest.len() + 1) as f64;
+        (share * self.ranked.max(1.0)).min(1.0)
+    }
+
+    /// The same for a short recording: by how gains fall off among the shifts, where fewer reach them than can be counted.
+    pub fn p_value_of_few(&self, gain: f64) -> f64 {
         let [often, seldom] = [FALL.0, FALL.1].map(|share| self.reached_by(share));
         let rate = (FALL.0 / FALL.1).ln() / (seldom - often);
-        // No number where there are no shifts.
         let foretold = FALL.1 * (-rate * (gain - seldom)).exp();
-        let share = if gain > seldom { counted.max(foretold) } else { counted };
-        (share * self.ranked.max(1.0)).min(1.0)
+        // No number where there are no shifts.
+        let foretold = if gain > seldom { (self.ranked.max(1.0) * foretold).min(1.0) } else { 0.0 };
+        self.p_value(gain).max(foretold)
     }
 }
 
@@ -161,7 +166,10 @@ mod tests {
         assert_eq!(chance.p_value(1e5), 1e-3);
         assert_eq!(chance.p_value(0.0), 1.0);
         // Every twentieth shift reaches it, and by how gains fall off more do.
-        assert!((chance.p_value(949.0) - 0.1 * (-0.125f64 * 5f64.ln()).exp()).abs() < 1e-9);
+        assert_eq!(chance.p_value(949.0), 0.051);
+        let foretold = 0.1 * (-0.125f64 * 5f64.ln()).exp();
+        assert!((chance.p_value_of_few(949.0) - foretold).abs() < 1e-9);
+        assert_eq!((chance.p_value_of_few(800.0), chance.p_value_of_few(1e5)), (0.2, 1e-3));
         // Where nothing could be shifted nothing is known.
         assert_eq!(Chance::default().p_value(1e9), 1.0);
     }
