@@ -135,9 +135,10 @@ fn a_time_limit_keeps_what_was_found() {
 #[test]
 fn after_ctrl_c_discover_tells_what_it_has() {
     let desk = Desk::new();
-    // So much to search that it is still on when it is stopped.
+    // Stopped while it searches: what comes after the search takes time too.
     let line = "discover --time-limit none --better 1 --beam 9 --most-effects 9 --threads 1 --json out.json";
-    let run = desk.interrupted(line, 3.0);
+    let searching = |_: &_| desk.json("out.json")["stopped"] == true;
+    let run = desk.interrupted_where(line, 3.0, searching);
     assert_eq!(run.code, Some(130), "{}{}", run.out, run.err);
     assert!(run.out.contains("The ladder"), "{}", run.out);
     assert!(!run.out.contains("MISSING EFFECT"), "{}", run.out);

@@ -82,9 +82,15 @@ impl Desk {
     /// Runs `aep` and sends it Ctrl-C after `seconds`; sooner where it had ended by itself before that.
     #[cfg(unix)]
     pub fn interrupted(&self, line: &str, seconds: f64) -> Run {
+        self.interrupted_where(line, seconds, |run| run.code != Some(0))
+    }
+
+    /// As [`interrupted`](Self::interrupted), earlier also where it was not `cut` yet.
+    #[cfg(unix)]
+    pub fn interrupted_where(&self, line: &str, seconds: f64, cut: impl Fn(&Run) -> bool) -> Run {
         let run = self.interrupted_once(line, seconds);
-        if run.code == Some(0) && seconds > 0.05 {
-            return self.interrupted(line, 0.5 * seconds);
+        if !cut(&run) && seconds > 0.05 {
+            return self.interrupted_where(line, 0.5 * seconds, cut);
         }
         run
     }
