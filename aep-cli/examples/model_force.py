@@ -117,10 +117,12 @@ def from_encoder(seen, half=12):
     return velocity, acceleration
 
 
-def model(hidden, velocity, acceleration):
+def model(hidden, velocity, acceleration, frictionless):
     mass = 17.0 if hidden == "inertia" else MASS
     direction = np.where(np.abs(velocity) > 1e-4, np.sign(velocity), velocity / 1e-4)
-    force = mass * acceleration + LEVEL * direction + VISCOUS * velocity + OFFSET
+    force = mass * acceleration
+    if not frictionless:
+        force += LEVEL * direction + VISCOUS * velocity + OFFSET
     return 0.93 * force if hidden == "model-gain" else force
 
 
@@ -130,12 +132,13 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--from-encoder", action="store_true", help="the model sees the encoder, not the states")
+    parser.add_argument("--frictionless", action="store_true", help="the model is a mass and nothing else")
     parser.add_argument("--measured", action="store_true", help="the force is measured with noise, not the command")
     parser.add_argument("--out", required=True)
     args = parser.parse_args()
     time, force, seen, states = simulate(args.hide, args.seed, args.seconds, args.measured)
     velocity, acceleration = from_encoder(seen) if args.from_encoder else (states[:, 1], states[:, 2])
-    given = model(args.hide, velocity, acceleration)
+    given = model(args.hide, velocity, acceleration, args.frictionless)
     with open(args.out, "w") as out:
         out.write("time_s,force_N,position_m,model_N\n")
         for row in zip(time, force, seen, given):

@@ -168,6 +168,18 @@ fn every_comparison_is_explained_where_that_is_asked() {
 }
 
 #[test]
+fn what_every_drive_has_is_named_before_what_varies_it() {
+    let desk = Desk::new();
+    // Without a friction level a drift of it gains more than the level.
+    for (base, names) in
+        [("viscous,offset", "stribeck, coulomb"), ("offset", "viscous, coulomb, stribeck")]
+    {
+        let run = desk.aep(&format!("discover --base {base} --time-limit none --json out.json"));
+        assert!(run.done().contains(&format!("MISSING EFFECTS FOUND: {names}")), "{}", run.out);
+    }
+}
+
+#[test]
 fn a_threshold_that_nothing_reaches_adds_nothing_and_says_so() {
     let desk = Desk::new();
     let run = desk.aep("discover --time-limit none --most-effects 1 --better 1e9 --json out.json");

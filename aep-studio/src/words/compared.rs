@@ -161,11 +161,14 @@ fn of_all(thresholds: &Thresholds) -> String {
     format!("less than {} of all that is explained", percent(thresholds.share))
 }
 
-/// An effect that was beside the first `rung` ones and was not needed in the end.
+/// An effect that was beside the first `rung` ones, and is none of them, and was not needed in the end.
 fn taken_out(discovery: &Discovery, rung: usize) -> Option<&Decision> {
+    let named = |effect: &&str| discovery.added.iter().any(|other| other == effect);
     let at = |decision: &&Decision| {
-        let size = decision.rung + dropped(decision).len();
-        decision.outcome == Outcome::Dropped && !adds(decision) && size == rung + 1
+        let gone = dropped(decision);
+        let size = decision.rung + gone.len();
+        let stands = gone.iter().any(named);
+        decision.outcome == Outcome::Dropped && !adds(decision) && size == rung + 1 && !stands
     };
     discovery.decisions.iter().rev().find(at)
 }

@@ -10,6 +10,7 @@ pub fn reason(decision: &Decision) -> Option<String> {
         Reason::AsGoodWithout => "as good without".to_owned(),
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),
+        Reason::Usual => "the usual effects in its place".to_owned(),
         Reason::Rival { rival } => rival.clone(),
         Reason::Refused { refusal } => self::refusal(refusal),
         Reason::NotFinite => "its prediction errors are not finite".to_owned(),

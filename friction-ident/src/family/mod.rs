@@ -628,6 +628,10 @@ impl ModelFamily for FrictionFamily {
         self.terms.iter().position(|main| main.name == stem)
     }
 
+    fn is_usual(&self, term: usize) -> bool {
+        self.effect(term).is_some_and(|effect| effect.is_usual())
+    }
+
     fn joins(&self, model: &Fitted, term: usize) -> bool {
         let Some(effect) = term.checked_sub(1).map(|index| self.effects[index]) else {
             return false;

@@ -10,6 +10,7 @@ mod grow;
 mod outdone;
 mod rivals;
 mod shape;
+mod usual;
 
 use std::collections::BTreeSet;
 
@@ -164,7 +165,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// Goes on to the best set of effects.
     pub fn finish(mut self, mut climb: Climb) -> Found {
-        let mut best = self.grown(&mut climb);
+        let best = self.grown(&mut climb);
+        let mut best = self.usual_instead(&climb, best);
         let mut rival = None;
         loop {
             let (needed, costs) = self.prune(&climb, best);

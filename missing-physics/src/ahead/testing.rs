@@ -91,6 +91,8 @@ pub struct Plant {
     pub kin: Vec<usize>,
     /// Forms with what they are forms of.
     pub forms: Vec<(usize, usize)>,
+    /// Effects that every plant has.
+    pub usual: Vec<usize>,
     /// A term that may be another one as well.
     pub related: Option<(usize, usize)>,
     /// Frequencies beside that of a tone, rad/s.
@@ -180,6 +182,7 @@ impl Plant {
             none: None,
             kin: vec![PUSH],
             forms: vec![(BENT, WAVE)],
+            usual: Vec::new(),
             related: None,
             leaps: Vec::new(),
             part: None,
@@ -316,6 +319,9 @@ impl ModelFamily for Plant {
     }
     fn regimes(&self) -> &[Regime] {
         &self.regimes
+    }
+    fn is_usual(&self, term: usize) -> bool {
+        self.usual.contains(&term)
     }
     fn form_of(&self, term: usize) -> Option<usize> {
         self.forms.iter().find(|(form, _)| *form == term).map(|(_, main)| *main)

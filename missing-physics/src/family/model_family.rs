@@ -142,6 +142,12 @@ pub trait ModelFamily: Sync {
         None
     }
 
+    /// Whether practically every system of this kind has the term. Where a base model lacks such terms, they are named
+    /// in the place of an effect that does no more than they do.
+    fn is_usual(&self, _term: usize) -> bool {
+        false
+    }
+
     /// The term that this one is another form of, if any. A form stands for its effect only where it is
     /// clearly better than the main one.
     fn form_of(&self, _term: usize) -> Option<usize> {

@@ -38,6 +38,8 @@ pub enum Reason {
     Chance,
     /// The candidate has an effect in its plain form.
     PlainForm,
+    /// The candidate has what every system of its kind has in the place of an effect.
+    Usual,
     /// Something that stands for no effect was asked.
     Rival {
         /// What it is.

@@ -1,0 +1,26 @@
+//! What every system has, in the place of what varies it.
+
+use super::*;
+
+/// The effects that are found among a wave, a beat and what is nearly both, and whether the usual ones were asked.
+fn among_three(usual: &[usize], hidden: &[(usize, &[f64])]) -> (BTreeSet<usize>, bool) {
+    let mut plant = Plant::new(1, hidden);
+    plant.usual = usual.to_vec();
+    let found = among(&[WAVE, BEAT, BOTH], &plant, Thresholds::default(), 4);
+    let asked = found.decisions.iter().any(|d| d.because == Some(Reason::Usual));
+    (found.added.into_iter().collect(), asked)
+}
+
+#[test]
+fn what_every_plant_has_stands_where_one_effect_does_as_much() {
+    let two: [(usize, &[f64]); 2] = [(WAVE, &[0.004]), (BEAT, &[0.004])];
+    assert_eq!(among_three(&[], &two), ([BOTH].into(), false));
+    assert_eq!(among_three(&[WAVE, BEAT], &two), ([WAVE, BEAT].into(), true));
+}
+
+#[test]
+fn an_effect_stays_where_the_usual_ones_do_less() {
+    assert_eq!(among_three(&[WAVE, BEAT], &[(BOTH, &[0.3])]), ([BOTH].into(), true));
+    // Nothing usual is missing.
+    assert_eq!(among_three(&[TONE], &[(BOTH, &[0.3])]), ([BOTH].into(), false));
+}
