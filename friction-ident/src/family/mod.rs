@@ -629,7 +629,7 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn is_usual(&self, term: usize) -> bool {
-        self.effect(term).is_some_and(|effect| effect.is_usual())
+        self.effect(term).is_some_and(Effect::is_usual)
     }
 
     fn joins(&self, model: &Fitted, term: usize) -> bool {
