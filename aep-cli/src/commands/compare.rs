@@ -31,7 +31,8 @@ pub struct Args {
     /// The model, as written by identify, extend or discover; may be given several times
     #[arg(long, value_name = "MODEL.json", required_unless_present = "model_force")]
     model: Vec<PathBuf>,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
+    /// position is noisy
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Seed of the placebos behind the p-values

@@ -46,7 +46,8 @@ pub struct Args {
     /// Write the last model
     #[arg(long, short = 'o', value_name = "MODEL.json")]
     output: Option<PathBuf>,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
+    /// position is noisy
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them but what belongs

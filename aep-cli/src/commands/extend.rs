@@ -33,7 +33,8 @@ pub struct Args {
     /// Write the extended model
     #[arg(long, short = 'o', value_name = "MODEL2.json")]
     output: PathBuf,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
+    /// position is noisy
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Seed of every random choice

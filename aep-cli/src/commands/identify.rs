@@ -47,7 +47,8 @@ pub struct Args {
     /// Seed of every random choice
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
+    /// position is noisy
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Write the model

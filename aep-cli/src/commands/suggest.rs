@@ -37,7 +37,8 @@ pub struct Args {
     /// The model, as written by identify, extend or discover
     #[arg(long, value_name = "MODEL.json", required_unless_present = "model_force")]
     model: Option<PathBuf>,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency
+    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
+    /// position is noisy
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Where several effects are likely: write a motion that tells them apart (time and position)

@@ -16,8 +16,12 @@ use crate::known::KnownError;
 pub(super) const SMOOTHER: f64 = 0.1;
 /// A second, heavier smoother: where the two disagree, the motion is in doubt.
 pub(super) const HEAVIER: f64 = 0.06;
-/// Default bandwidth of the comparison as a share of the sampling frequency.
+/// Default bandwidth of the comparison as a share of the sampling frequency, where noise of the position leaves it.
 const BANDWIDTH: f64 = 0.05;
+/// Largest share of noise in the square of the acceleration that the default bandwidth lets pass: by as much least
+/// squares underrate the mass. And the factor by which a bandwidth that lets more pass is narrowed.
+const NOISE: f64 = 0.05;
+const NARROWER: f64 = 1.6;
 /// Grid points per period of the bandwidth.
 const GRID: f64 = 2.5;
 /// Most grid points; a longer recording is thinned out.
@@ -140,7 +144,8 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Prepares `recording`; `bandwidth` in Hz, by default 5 % of the sampling frequency.
+    /// Prepares `recording`; `bandwidth` in Hz, by default 5 % of the sampling frequency or what noise of the position
+    /// leaves of it.
     ///
     /// # Errors
     /// A channel is missing or constant, or too little of the recording moves.
@@ -167,7 +172,38 @@ impl Prepared {
             );
         }
         let relative = bandwidth.map_or(BANDWIDTH, |hz| hz * interval).min(0.2);
-        Self::from_raw(raw, interval, relative, recording.hold())
+        let prepared = Self::from_raw(raw, interval, relative, recording.hold())?;
+        Ok(if bandwidth.is_none() { prepared.above_noise() } else { prepared })
+    }
+
+    /// The same at the widest bandwidth at which the acceleration is not noise.
+    fn above_noise(mut self) -> Self {
+        while self.acceleration_noise() > NOISE {
+            let narrower = self.clone().with_bandwidth(self.bandwidth * self.interval / NARROWER);
+            if narrower.grid.len() < LEAST_POINTS {
+                break;
+            }
+            self = narrower;
+        }
+        self
+    }
+
+    /// Share of the square of the compared acceleration that noise of the position makes. The smoother takes out what
+    /// white noise has above its cut-off; the rest, differentiated twice below f, is rms (2 pi f)^2 sqrt(2 f / 5 fs).
+    fn acceleration_noise(&self) -> f64 {
+        let position = self.position_noise / (1.0 - 2.0 * self.cutoff * self.interval).sqrt();
+        let relative = self.bandwidth * self.interval;
+        let rate = std::f64::consts::TAU * self.bandwidth;
+        let noise = position * rate * rate * (2.0 * relative / 5.0).sqrt();
+        (noise / rms(&self.compare(&self.acceleration)).max(f64::MIN_POSITIVE)).powi(2)
+    }
+
+    fn with_bandwidth(mut self, relative: f64) -> Self {
+        self.bandwidth = relative / self.interval;
+        self.kernel = Kernel::new(relative);
+        self.stride = self.stride_for(relative);
+        self.grid = self.choose_grid(relative);
+        self
     }
 
     fn from_raw(
@@ -188,7 +224,7 @@ impl Prepared {
         let rest_speed = (REST * velocity_noise).max(RINGING * rms(&light.velocity));
         let moving: Vec<f64> =
             light.velocity.iter().map(|v| f64::from(u8::from(v.abs() > rest_speed))).collect();
-        let mut prepared = Self {
+        let prepared = Self {
             interval,
             time: raw.time,
             position: light.position,
@@ -205,9 +241,8 @@ impl Prepared {
             rest_speed,
             heavier: (heavy.velocity, heavy.acceleration),
             kernel: Kernel::new(relative),
-        };
-        prepared.stride = prepared.stride_for(relative);
-        prepared.grid = prepared.choose_grid(relative);
+        }
+        .with_bandwidth(relative);
         if prepared.grid.len() < LEAST_POINTS {
             let (points, needed) = (prepared.grid.len(), LEAST_POINTS);
             return Err(PreparationError::TooLittle { points, needed });

@@ -18,6 +18,9 @@ use crate::task::Thresholds;
 pub const IN_FULL: usize = 8;
 /// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
 const MOST: f64 = 0.5;
+/// Share of what the base model errs beyond the sensors, squared, that an incomplete model leaves at most: what leaves
+/// more is not what is missing.
+const LEFT: f64 = 0.9;
 
 /// What a search found.
 #[derive(Clone, Debug)]
@@ -226,7 +229,8 @@ impl Found {
         let Some(top) = self.rungs.last() else { return };
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
         // A likelihood gains by another share of noise, too: what a model explains it foretells.
-        let falls = top.scale < self.base.scale;
+        let falls =
+            top.scale < self.base.scale && !self.leaves_most(top, ahead.budget(), thresholds);
         if self.complete && falls && no_cause.is_none() {
             return;
         }
@@ -258,6 +262,12 @@ impl Found {
         self.costs.clear();
         self.as_good.clear();
         self.p_values.clear();
+    }
+
+    /// Whether a model that errs more than it may leaves nearly all of what the base lacks.
+    fn leaves_most(&self, top: &Node, budget: f64, thresholds: &Thresholds) -> bool {
+        let beyond = |node: &Node| (node.scale / budget).powi(2) - 1.0;
+        top.scale > thresholds.complete * budget && beyond(top) > LEFT * beyond(&self.base)
     }
 
     /// Whether a term, in whatever form, is among `terms`.
@@ -316,7 +326,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::ahead::testing::{BEAT, Plant, WAVE};
+    use crate::ahead::testing::{BEAT, Plant, TONE, WAVE};
     use crate::report::Fault;
 
     /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
@@ -375,6 +385,22 @@ mod tests {
         found.judge(&plant, &plant, &Thresholds::default());
         assert!(found.added.is_empty() && !found.complete);
         assert!(matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]));
+    }
+
+    #[test]
+    fn names_go_where_nearly_all_of_what_is_missing_is_left() {
+        // The tone is not found.
+        let stands = |tone: f64, wave: f64| {
+            let plant = Plant::new(3, &[(TONE, &[tone, 5.0]), (WAVE, &[wave])]);
+            let node = |terms| fit::evaluated(&plant, Plant::model(terms), 0);
+            let (base, rung) = (node(&[]), node(&[(WAVE, &[wave])]));
+            let mut found = Found { added: vec![WAVE], rungs: vec![rung], ..Found::of(base) };
+            found.judge(&plant, &plant, &Thresholds::default());
+            !found.added.is_empty()
+        };
+        assert!(!stands(0.1, 0.02));
+        // More than a tenth of it, and all of it.
+        assert!(stands(0.1, 0.1) && stands(0.0, 0.02));
     }
 
     #[test]
