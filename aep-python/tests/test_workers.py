@@ -103,9 +103,11 @@ def test_ctrl_c_ends_the_processes_and_keeps_what_was_found(box):
         aep.minimize(costs.slow_valley, box, workers=2, maxfun=10_000)
     assert time.perf_counter() - begin < 10.0, "200 s of evaluations were left"
     assert 0 < raised.value.result.nfev < 1000
-    for child in multiprocessing.active_children():
-        child.join(5.0)
-        assert not child.is_alive()
+    # Not `join`: a process that the pool's own thread is just taking leave of counts as alive for a moment.
+    until = time.perf_counter() + 10.0
+    while multiprocessing.active_children() and time.perf_counter() < until:
+        time.sleep(0.05)
+    assert not multiprocessing.active_children()
 
 
 def test_rows_at_once_go_to_processes_in_shares(box):
