@@ -148,14 +148,20 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         Fitter::new(self.family, self.ahead).refit(start, setting, STEPS.0)
     }
 
-    /// Sets of one effect beside a base model.
-    pub fn begin(&mut self, base: Node) -> Climb {
+    /// A model at its values, where it predicts best.
+    pub fn as_it_is(&self, model: Fitted) -> Node {
+        let setting = fit::best_setting(self.ahead, &model);
+        fit::evaluated(self.ahead, model, setting)
+    }
+
+    /// Sets of one effect beside a base model, fitted from there and from where it stands `elsewhere`.
+    pub fn begin(&mut self, base: Node, elsewhere: Option<Node>) -> Climb {
         let mut climb = Climb {
             nodes: vec![vec![base.clone()]],
             ranking: Vec::new(),
             screened: Vec::new(),
             refused: Vec::new(),
-            beam: vec![base.clone()],
+            beam: std::iter::once(base.clone()).chain(elsewhere).collect(),
             base,
             ended: false,
         };

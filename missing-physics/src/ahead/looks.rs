@@ -17,6 +17,9 @@ use crate::fit;
 use crate::report::{Decision, Discovery, Remark};
 use crate::task::{Event, Observer, Settings, Thresholds};
 
+/// Factor by which what every model has changes where its fit has left the valley of its start.
+const FAR: f64 = 3.0;
+
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 ///
 /// What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
@@ -314,17 +317,20 @@ impl<'a> Run<'a> {
             .collect();
         let thresholds = self.thresholds.in_part(ahead.asked()).in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
-        let base = if let Some(near) = &self.settings.start {
-            search.base_near(near.clone())
+        let (base, elsewhere) = if let Some(near) = &self.settings.start {
+            (search.base_near(near.clone()), None)
         } else {
             // A start needs no more than a part.
             let near = family.in_part().unwrap_or(family);
             let everywhere = vec![1.0; near.target().len()];
             let start = fit::identify(near, base, &everywhere, self.settings.seed);
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
-            base_of(&search, start.fit.model.within(family))
+            let start = start.fit.model.within(family);
+            let base = base_of(&search, start.clone());
+            let left = has_left(family, &start, &base.model);
+            (base, left.then(|| search.as_it_is(start)))
         };
-        let climb = search.begin(base);
+        let climb = search.begin(base, elsewhere);
         Pursuit { reading, search, climb }
     }
 
@@ -340,6 +346,14 @@ impl<'a> Run<'a> {
         discovery.wall_s = self.started.elapsed().as_secs_f64();
         discovery
     }
+}
+
+/// Whether a base model has left the valley where it began: beside a strong effect that is missing, what makes the input
+/// matter less predicts better (a mass so large that no force moves it), and no effect shows from there.
+fn has_left<F: ModelFamily + ?Sized>(family: &F, start: &Fitted, base: &Fitted) -> bool {
+    let ends = base.parameters(family).zip(&base.values);
+    let both = ends.zip(&start.values).filter(|(((term, p), _), _)| term.always && p.lower >= 0.0);
+    both.into_iter().any(|((_, end), begin)| end / begin > FAR || begin / end > FAR)
 }
 
 /// Whether a search was asked to end, or its time is up.
@@ -378,6 +392,19 @@ mod tests {
         assert!(of(3, true).is_plainer_than(&of(1, false)));
         assert!(!of(2, true).is_plainer_than(&of(2, true)));
         assert!(!of(1, false).is_plainer_than(&of(2, false)));
+    }
+
+    #[test]
+    fn a_base_model_has_left_its_valley_where_what_every_model_has_changed_by_a_factor() {
+        let left = |from: f64, to: f64| {
+            let at = |drive| Fitted { values: vec![drive], ..Plant::model(&[]) };
+            has_left(&plant(), &at(from), &at(to))
+        };
+        assert!(left(1.0, 4.0) && left(4.0, 1.0));
+        assert!(!left(1.0, 2.0) && !left(2.0, 1.0));
+        // An effect of the base may go anywhere.
+        let with = |wave| Plant::model(&[(WAVE, &[wave])]);
+        assert!(!has_left(&plant(), &with(0.01), &with(0.5)));
     }
 
     #[test]

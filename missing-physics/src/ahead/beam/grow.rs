@@ -42,11 +42,18 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         for (place, from) in climb.beam.iter().enumerate() {
             let lag = front.as_ref().map(|front| self.comparison.compare(from, front).nats);
             let (children, screened) = self.expand(&climb.base, from, size, lag);
+            // The base model in another valley is another start and no model to be better than.
+            let from = if size == 1 { &climb.base } else { from };
+            let by_chance = if place == 0 { Some(&screened) } else { None };
+            let by_chance = by_chance.or(climb.screened.first().map(|(_, s)| s));
+            if let Some(screened) = by_chance.filter(|_| place == 0 || size == 1) {
+                let gains = children.iter().map(|child| self.comparison.compare(from, child));
+                let each = gains.map(|gain| self.p_value(screened, gain));
+                least = least.into_iter().chain(each).reduce(f64::min);
+            }
             if place == 0 {
                 let best = children.iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation));
                 front = Some(best.unwrap_or(from).clone());
-                let gains = children.iter().map(|child| self.comparison.compare(from, child));
-                least = gains.map(|gain| self.p_value(&screened, gain)).reduce(f64::min);
                 if !screened.promises.is_empty() {
                     climb.screened.push((from.clone(), screened.clone()));
                 }

@@ -51,7 +51,7 @@ fn among(candidates: &[usize], plant: &Plant, thresholds: Thresholds, most: usiz
     let candidates = candidates.to_vec();
     let mut search = Search::new(plant, plant, thresholds, candidates, &never, &|_| ());
     let base = search.base(Plant::model(&[]));
-    let climb = search.begin(base);
+    let climb = search.begin(base, None);
     search.finish(climb)
 }
 
