@@ -1,7 +1,7 @@
 //! What keeps a model incomplete, in sentences.
 
 use missing_physics::measurement::quantity::quantity;
-use missing_physics::report::{Course, Fault, NoCause, Remains};
+use missing_physics::report::{Astray, Course, Fault, NoCause, Remains};
 
 use super::places::pattern;
 
@@ -44,6 +44,11 @@ pub fn remains(what: &Remains) -> String {
             100.0 * place.share,
             pattern(place)
         ),
+        Remains::Astray { astray } => format!(
+            "{}: one sample ahead this model errs least where the measured force hardly matters, and says little of what it \
+             does. Where the value is known, fix it (--fix).",
+            capital(&self::astray(astray))
+        ),
         Remains::TooCoarse => {
             "From one sample to the next the model's own output changes as much as what it leaves: this is too coarse to \
              tell noise from something that is missing, unless the noise is stated."
@@ -56,6 +61,15 @@ pub fn remains(what: &Remains) -> String {
             quantity(*noise, unit)
         ),
     }
+}
+
+fn astray(Astray { parameter, value, balance, unit }: &Astray) -> String {
+    format!(
+        "{parameter} is {}, {:.0} times the {} that the balance of forces gives",
+        quantity(*value, unit),
+        value / balance,
+        quantity(*balance, unit)
+    )
 }
 
 fn fault(fault: &Fault) -> String {
@@ -97,6 +111,7 @@ fn course(course: &Course) -> String {
 /// Why effects that fit are not the cause.
 pub fn no_cause(why: &NoCause) -> String {
     match why {
+        NoCause::Astray { astray } => self::astray(astray),
         NoCause::PlainDoesMore { place } => format!("{} does more", pattern(place)),
         NoCause::MostIsLeft { coordinate } => {
             format!("most of what depends on {coordinate} is left")
@@ -140,6 +155,19 @@ mod tests {
             "time lowers the prediction error by 120 nats: it varies over a range of 1.70 N, most of all between 100 mm and \
              110 mm."
         ));
+    }
+
+    #[test]
+    fn what_is_astray_says_how_far_and_how_to_mend_it() {
+        let (parameter, unit) = ("mass".to_owned(), "kg".to_owned());
+        let astray = Astray { parameter, value: 1254.6, balance: 52.0, unit };
+        let why = no_cause(&NoCause::Astray { astray: astray.clone() });
+        assert_eq!(why, "mass is 1255 kg, 24 times the 52.0 kg that the balance of forces gives");
+        let told = remains(&Remains::Astray { astray });
+        assert!(
+            told.starts_with("Mass is 1255 kg, 24 times") && told.ends_with("fix it (--fix)."),
+            "{told}"
+        );
     }
 
     #[test]

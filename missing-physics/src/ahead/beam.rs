@@ -148,14 +148,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         Fitter::new(self.family, self.ahead).refit(start, setting, STEPS.0)
     }
 
-    /// A model at its values, where it predicts best.
-    pub fn as_it_is(&self, model: Fitted) -> Node {
-        let setting = fit::best_setting(self.ahead, &model);
-        fit::evaluated(self.ahead, model, setting)
+    /// The base model at its best with what every model has as it is.
+    pub fn base_holding(&self, start: Fitted) -> Node {
+        self.base_by(self.fitter().holding(), start)
     }
 
     /// Sets of one effect beside a base model, fitted from there and from where it stands `elsewhere`.
-    pub fn begin(&mut self, base: Node, elsewhere: Option<Node>) -> Climb {
+    pub fn begin(&mut self, base: Node, elsewhere: Vec<Node>) -> Climb {
         let mut climb = Climb {
             nodes: vec![vec![base.clone()]],
             ranking: Vec::new(),

@@ -27,6 +27,7 @@ pub struct Fitter<'a, F: ModelFamily + ?Sized> {
     family: &'a F,
     ahead: &'a dyn Ahead,
     stop: &'a (dyn Fn() -> bool + Sync),
+    held: bool,
 }
 
 impl<F: ModelFamily + ?Sized> Clone for Fitter<'_, F> {
@@ -40,7 +41,7 @@ impl<F: ModelFamily + ?Sized> Copy for Fitter<'_, F> {}
 impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
     /// One that nothing stops.
     pub fn new(family: &'a F, ahead: &'a dyn Ahead) -> Self {
-        Self { family, ahead, stop: &|| false }
+        Self { family, ahead, stop: &|| false, held: false }
     }
 
     /// One that goes no further once `stop` says so.
@@ -49,9 +50,15 @@ impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
         Self { stop, ..self }
     }
 
+    /// One that leaves what every model has where it is.
+    #[must_use]
+    pub fn holding(self) -> Self {
+        Self { held: true, ..self }
+    }
+
     /// Fits a model at a setting in at most `steps` steps.
     pub fn fit(&self, start: Fitted, setting: usize, steps: usize) -> Node {
-        let mut node = evaluated(self.ahead, start, setting);
+        let mut node = evaluated(self.ahead, start, setting).holding(self.held);
         let mut damping = 1e-3;
         for _ in 0..steps {
             if (self.stop)() {
@@ -130,7 +137,8 @@ fn step<F: ModelFamily + ?Sized>(
     }
     *damping = tried[best];
     let (model, errors) = (trials[best].0.clone(), errors[best].clone());
-    Some((Node::new(ahead, model, node.setting, errors), fall < (CONVERGED * before).max(1.0)))
+    let next = Node::new(ahead, model, node.setting, errors).holding(node.is_held());
+    Some((next, fall < (CONVERGED * before).max(1.0)))
 }
 
 /// Normal equations of the weighed errors in units of their scale.
@@ -189,6 +197,18 @@ fn best_of(ahead: &dyn Ahead, model: &Fitted, settings: &[usize]) -> usize {
 mod tests {
     use super::*;
     use crate::ahead::testing::{NOISE, Plant, SAMPLES, TONE, TONES, WAVE};
+
+    #[test]
+    fn what_is_held_stays_and_all_else_is_fitted() {
+        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        let far = Fitted { terms: vec![0, WAVE], values: vec![0.9, -2.0] };
+        let node = Fitter::new(&plant, &plant).holding().refit(far.clone(), 0, 10);
+        assert!(node.is_held() && node.model.values[0] == 0.9);
+        assert!(node.jacobian(&plant, &plant)[0].iter().all(|change| *change == 0.0));
+        assert!((node.model.values[1] - 0.05).abs() < 0.1, "{:?}", node.model);
+        let free = Fitter::new(&plant, &plant).refit(far, 0, 10);
+        assert!(!free.is_held() && (free.model.values[0] - 1.0).abs() < 0.01);
+    }
 
     #[test]
     fn a_fit_of_a_linear_model_ends_at_its_least_squares() {

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::astray::astray;
 use super::chance::Chance;
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
@@ -11,7 +12,7 @@ use super::screen::Promise;
 use super::{Ahead, local};
 use crate::family::Series;
 use crate::family::{Fitted, ModelFamily};
-use crate::report::{Decision, Lacking, Remains, Remark};
+use crate::report::{Decision, Lacking, NoCause, Remains, Remark};
 use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
@@ -211,8 +212,7 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let top = self.rungs.last().unwrap_or(&self.base);
-        self.places = local::places(ahead, top, thresholds.local, &family.quantity().unit);
-        self.places.splice(0..0, ahead.remains(&top.model, thresholds.complete));
+        self.places = left_by(top, family, ahead, thresholds);
         self.places.splice(0..0, self.rival.clone());
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
@@ -228,6 +228,8 @@ impl Found {
     ) {
         let Some(top) = self.rungs.last() else { return };
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
+        let astray = || astray(family, &top.model).map(|astray| NoCause::Astray { astray });
+        let no_cause = no_cause.or_else(astray);
         // A likelihood gains by another share of noise, too: what a model explains it foretells.
         let falls =
             top.scale < self.base.scale && !self.leaves_most(top, ahead.budget(), thresholds);
@@ -253,8 +255,7 @@ impl Found {
             lacking,
             because: no_cause,
         });
-        self.places = local::places(ahead, &self.base, thresholds.local, &family.quantity().unit);
-        self.places.splice(0..0, ahead.remains(&self.base.model, thresholds.complete));
+        self.places = left_by(&self.base, family, ahead, thresholds);
         self.complete = false;
         self.rungs.clear();
         self.added.clear();
@@ -275,6 +276,19 @@ impl Found {
         let main = |t: usize| family.form_of(t).unwrap_or(t);
         terms.iter().any(|other| main(*other) == main(term))
     }
+}
+
+/// What a model leaves, whether its errors show it or not.
+fn left_by<F: ModelFamily + ?Sized>(
+    node: &Node,
+    family: &F,
+    ahead: &dyn Ahead,
+    thresholds: &Thresholds,
+) -> Vec<Remains> {
+    let shows = local::places(ahead, node, thresholds.local, &family.quantity().unit);
+    let astray = astray(family, &node.model).map(|astray| Remains::Astray { astray });
+    let hidden = ahead.remains(&node.model, thresholds.complete);
+    astray.into_iter().chain(hidden).chain(shows).collect()
 }
 
 /// A candidate beside a model.
@@ -385,6 +399,23 @@ mod tests {
         found.judge(&plant, &plant, &Thresholds::default());
         assert!(found.added.is_empty() && !found.complete);
         assert!(matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]));
+    }
+
+    #[test]
+    fn names_go_and_nothing_is_complete_where_what_every_model_has_is_astray() {
+        let (plant, mut found) = found(None);
+        for node in std::iter::once(&mut found.base).chain(&mut found.rungs) {
+            node.model.values[0] = 5.0;
+        }
+        found.place(&plant, &plant, &Thresholds::default());
+        assert!(matches!(&found.places[..], [Remains::Astray { .. }]) && !found.complete);
+        found.judge(&plant, &plant, &Thresholds::default());
+        let because = |remark: &Remark| match remark {
+            Remark::NotTheCause { because: Some(NoCause::Astray { astray }), .. } => astray.value,
+            _ => 0.0,
+        };
+        assert_eq!((found.added.len(), because(&found.remarks[0])), (0, 5.0));
+        assert!(matches!(&found.places[..], [Remains::Astray { .. }, ..]));
     }
 
     #[test]

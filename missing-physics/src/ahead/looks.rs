@@ -4,11 +4,13 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
+use super::astray::elsewhere;
 use super::beam::{Climb, Search, Tell};
 use super::compare::Comparison;
 use super::fit::{Fitter, best_setting, evaluated};
-use super::found::Found;
+use super::found::{Found, IN_FULL};
 use super::node::Node;
+use super::refused::refused;
 use super::report::Report;
 use super::residuals::Residuals;
 use super::{Ahead, reading};
@@ -16,9 +18,6 @@ use crate::family::{Fitted, ModelFamily};
 use crate::fit;
 use crate::report::{Decision, Discovery, Remark};
 use crate::task::{Event, Observer, Settings, Thresholds};
-
-/// Factor by which what every model has changes where its fit has left the valley of its start.
-const FAR: f64 = 3.0;
 
 /// Fits the base model, then searches the set of effects that is missing, by prediction errors alone.
 ///
@@ -50,6 +49,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
         let there = there.as_ref().and_then(|(there, nats)| Some((there.coloured()?, *nats)));
         (here, there)
     });
+    let asked = thresholds.in_part(here.whole.asked());
     let look = |most: usize| {
         let (here, there) = coloured.as_ref().filter(|_| most > 0 && !stop())?;
         let run = Run { thresholds: Thresholds { most, ..run.thresholds }, ..run };
@@ -75,7 +75,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let fewer = if first.found.complete { first.found.added.len() - 1 } else { most };
     let second = second.or_else(|| look(fewer.min(most)));
     match second {
-        Some(second) if second.is_plainer_than(&first) || first.is_silent_on(&second) => {
+        Some(second) if second.is_plainer_than(&first, &asked) || first.is_silent_on(&second) => {
             run.told(second.after(first.found.decisions))
         }
         Some(second) if !second.found.stopped => run.told(first),
@@ -246,10 +246,25 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
         self.found.complete && self.found.added.len() <= PAIR
     }
 
-    /// Whether it leaves nothing where the other does, or does so with fewer effects.
-    fn is_plainer_than(&self, other: &Self) -> bool {
+    /// Whether it leaves nothing where the other does, or does so with fewer effects that do as much.
+    fn is_plainer_than(&self, other: &Self, thresholds: &Thresholds) -> bool {
         let fewer = self.found.added.len() < other.found.added.len();
-        self.found.complete && (fewer || !other.found.complete)
+        self.found.complete
+            && (!other.found.complete || fewer && !self.misses(&other.found, thresholds))
+    }
+
+    /// Whether what was found elsewhere does more here than what was found here.
+    fn misses(&self, other: &Found, thresholds: &Thresholds) -> bool {
+        let Reading { family, .. } = *self.reading;
+        let ahead = self.reading.asked(self.on_part);
+        let model = other.top().0.model.clone().within(family);
+        let setting = best_setting(ahead, &model);
+        let other = Fitter::new(family, ahead).refit(model, setting, IN_FULL);
+        let compare = |from, to| Comparison::new(family, ahead).compare(from, to).nats;
+        let share = if self.on_part { ahead.share() } else { 1.0 };
+        let clear = thresholds.in_part(share).clear(compare(&self.found.base, &other));
+        compare(self.found.top().0, &other) > clear
+            && refused(family, ahead, &self.found.base, &other).is_none()
     }
 
     /// Whether it names nothing, and bears out what the other look found.
@@ -318,7 +333,7 @@ impl<'a> Run<'a> {
         let thresholds = self.thresholds.in_part(ahead.asked()).in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
         let (base, elsewhere) = if let Some(near) = &self.settings.start {
-            (search.base_near(near.clone()), None)
+            (search.base_near(near.clone()), Vec::new())
         } else {
             // A start needs no more than a part.
             let near = family.in_part().unwrap_or(family);
@@ -327,8 +342,9 @@ impl<'a> Run<'a> {
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
             let start = start.fit.model.within(family);
             let base = base_of(&search, start.clone());
-            let left = has_left(family, &start, &base.model);
-            (base, left.then(|| search.as_it_is(start)))
+            let elsewhere = elsewhere(family, &start, &base.model);
+            let elsewhere = elsewhere.into_iter().map(|start| search.base_holding(start));
+            (base, elsewhere.collect())
         };
         let climb = search.begin(base, elsewhere);
         Pursuit { reading, search, climb }
@@ -348,14 +364,6 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Whether a base model has left the valley where it began: beside a strong effect that is missing, what makes the input
-/// matter less predicts better (a mass so large that no force moves it), and no effect shows from there.
-fn has_left<F: ModelFamily + ?Sized>(family: &F, start: &Fitted, base: &Fitted) -> bool {
-    let ends = base.parameters(family).zip(&base.values);
-    let both = ends.zip(&start.values).filter(|(((term, p), _), _)| term.always && p.lower >= 0.0);
-    both.into_iter().any(|((_, end), begin)| end / begin > FAR || begin / end > FAR)
-}
-
 /// Whether a search was asked to end, or its time is up.
 fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
     let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
@@ -365,7 +373,7 @@ fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ahead::testing::{Plant, WAVE};
+    use crate::ahead::testing::{BEAT, Plant, WAVE};
 
     fn plant() -> Plant {
         Plant::new(1, &[(WAVE, &[0.05])])
@@ -378,7 +386,7 @@ mod tests {
         effects: usize,
         complete: bool,
     ) -> Sought<'a, Plant> {
-        let base = evaluated(plant, Plant::model(&[]), 0);
+        let base = Fitter::new(plant, plant).refit(Plant::model(&[]), 0, IN_FULL);
         let found = Found { added: vec![WAVE; effects], complete, ..Found::of(base) };
         Sought { reading, found, on_part: false }
     }
@@ -388,23 +396,36 @@ mod tests {
         let plant = plant();
         let reading = Reading::of(&plant).unwrap();
         let of = |effects, complete| sought(&reading, &plant, effects, complete);
-        assert!(of(1, true).is_plainer_than(&of(2, true)));
-        assert!(of(3, true).is_plainer_than(&of(1, false)));
-        assert!(!of(2, true).is_plainer_than(&of(2, true)));
-        assert!(!of(1, false).is_plainer_than(&of(2, false)));
+        let is_plainer = |effects, complete, other: &Sought<'_, Plant>| {
+            of(effects, complete).is_plainer_than(other, &Thresholds::default())
+        };
+        assert!(is_plainer(1, true, &of(2, true)));
+        assert!(is_plainer(3, true, &of(1, false)));
+        assert!(!is_plainer(2, true, &of(2, true)));
+        assert!(!is_plainer(1, false, &of(2, false)));
     }
 
     #[test]
-    fn a_base_model_has_left_its_valley_where_what_every_model_has_changed_by_a_factor() {
-        let left = |from: f64, to: f64| {
-            let at = |drive| Fitted { values: vec![drive], ..Plant::model(&[]) };
-            has_left(&plant(), &at(from), &at(to))
+    fn a_look_that_misses_what_another_found_is_not_plainer() {
+        let plant = plant();
+        let reading = Reading::of(&plant).unwrap();
+        let other = |size: f64| {
+            let model = Plant::model(&[(WAVE, &[size]), (BEAT, &[1e-3])]);
+            let mut other = sought(&reading, &plant, 2, true);
+            other.found.rungs = vec![evaluated(&plant, model, 0)];
+            other
         };
-        assert!(left(1.0, 4.0) && left(4.0, 1.0));
-        assert!(!left(1.0, 2.0) && !left(2.0, 1.0));
-        // An effect of the base may go anywhere.
-        let with = |wave| Plant::model(&[(WAVE, &[wave])]);
-        assert!(!has_left(&plant(), &with(0.01), &with(0.5)));
+        let is_plainer = |first: &Sought<'_, Plant>, wave: &[f64]| {
+            let mut second = sought(&reading, &plant, wave.len(), true);
+            let nodes = wave.iter().map(|size| Plant::model(&[(WAVE, &[*size])]));
+            second.found.rungs = nodes.map(|model| evaluated(&plant, model, 0)).collect();
+            second.is_plainer_than(first, &Thresholds::default())
+        };
+        // A wave is there and no beat.
+        assert!(is_plainer(&other(0.05), &[0.05]));
+        assert!(!is_plainer(&other(0.05), &[]));
+        // What was found elsewhere is asked at its best here.
+        assert!(!is_plainer(&other(0.01), &[]));
     }
 
     #[test]

@@ -26,6 +26,7 @@ pub struct Node {
     pub innovations: Vec<f64>,
     /// Robust rms of that.
     pub deviation: f64,
+    held: bool,
     jacobian: OnceLock<Vec<Vec<f64>>>,
     held_out: OnceLock<Vec<f64>>,
     correlation: OnceLock<f64>,
@@ -48,11 +49,23 @@ impl Node {
             law,
             innovations,
             deviation,
+            held: false,
             jacobian: OnceLock::new(),
             held_out: OnceLock::new(),
             correlation: OnceLock::new(),
             missing_force: OnceLock::new(),
         }
+    }
+
+    /// The same; with `held` nothing moves what every model has: its derivatives are 0.
+    #[must_use]
+    pub fn holding(self, held: bool) -> Self {
+        Self { held, ..self }
+    }
+
+    /// Whether what every model has is held.
+    pub fn is_held(&self) -> bool {
+        self.held
     }
 
     /// Derivatives of the errors with respect to the parameters on their scales.
@@ -69,8 +82,9 @@ impl Node {
             let mut columns = ahead.errors_beside(&self.model, self.setting, &trials);
             for (column, moved) in columns.iter_mut().zip(&moved) {
                 let step = moved.difference();
+                let held = self.held && moved.is_known();
                 for (new, old) in column.iter_mut().zip(&self.errors) {
-                    *new = (*new - old) / step;
+                    *new = if held { 0.0 } else { (*new - old) / step };
                 }
             }
             columns

@@ -6,7 +6,7 @@ use crate::family::{ModelFamily, Role};
 use crate::report::Refusal;
 
 /// Share of an amplitude of every model below which nothing of it is left.
-const GONE: f64 = 0.01;
+const GONE: f64 = 0.001;
 
 /// The effect of a model that is not one as it was fitted, and why, if any: an amplitude ended at the limit of its
 /// search, what makes it that effect is gone (a gap of no width), or it left nothing of what every model has (a mass).

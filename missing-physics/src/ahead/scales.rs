@@ -22,6 +22,7 @@ pub struct Moved {
     value: f64,
     /// One unit of the fit, for a linear parameter.
     scale: f64,
+    known: bool,
 }
 
 /// The parameters of a model as they are moved.
@@ -39,12 +40,17 @@ impl Moved {
         // What every model has is known (an inertia): its own size is its scale.
         let known = always && parameter.lower > 0.0;
         let scale = if known { value.abs() } else { value.abs().max(typical) };
-        Self { parameter: parameter.clone(), value, scale: scale.max(f64::MIN_POSITIVE) }
+        Self { parameter: parameter.clone(), value, scale: scale.max(f64::MIN_POSITIVE), known }
     }
 
     /// One unit of the fit; 1 for a logarithm's own.
     pub fn scale(&self) -> f64 {
         self.scale
+    }
+
+    /// Whether every model has it, and more than none of it: an inertia.
+    pub fn is_known(&self) -> bool {
+        self.known
     }
 
     fn is_log(&self) -> bool {

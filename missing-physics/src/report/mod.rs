@@ -38,7 +38,7 @@ pub use missing_force::MissingForce;
 pub use place::{Pattern, RegimeShare, Where};
 pub use plot::{Curve, Plot};
 pub use refusal::Refusal;
-pub use remains::{Fault, NoCause, Remains};
+pub use remains::{Astray, Fault, NoCause, Remains};
 pub use remark::{Lacking, Remark};
 pub use residual_map::{MapBin, ResidualMap};
 pub use rung::{Estimate, NamedError, Rung, SplitError, floor_key, relative_key};

@@ -23,6 +23,20 @@ pub enum Fault {
     },
 }
 
+/// A parameter of every model that is far larger than the balance with the same effects makes it: the model predicts best
+/// where the measured input hardly matters, and says little of what the input does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Astray {
+    /// The parameter: `mass`.
+    pub parameter: String,
+    /// Its value, in `unit`.
+    pub value: f64,
+    /// What least squares of the balance make of it.
+    pub balance: f64,
+    /// SI unit of both.
+    pub unit: String,
+}
+
 /// Something that a model leaves: with it no model is complete, however small its errors are on the whole.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -81,6 +95,11 @@ pub enum Remains {
         /// On which, and how.
         place: Where,
     },
+    /// What every model has is far from what the balance makes it.
+    Astray {
+        /// How far.
+        astray: Astray,
+    },
     /// Its own output is as quick as what it leaves: noise that nobody stated is not known.
     TooCoarse,
     /// What it leaves changes more slowly than noise does.
@@ -98,6 +117,11 @@ pub enum Remains {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum NoCause {
+    /// What every model has is far from what the balance makes it.
+    Astray {
+        /// How far.
+        astray: Astray,
+    },
     /// Something over time that is no effect does more.
     PlainDoesMore {
         /// What.

@@ -51,7 +51,7 @@ fn among(candidates: &[usize], plant: &Plant, thresholds: Thresholds, most: usiz
     let candidates = candidates.to_vec();
     let mut search = Search::new(plant, plant, thresholds, candidates, &never, &|_| ());
     let base = search.base(Plant::model(&[]));
-    let climb = search.begin(base, None);
+    let climb = search.begin(base, Vec::new());
     search.finish(climb)
 }
 
@@ -243,7 +243,7 @@ fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
         );
     }
     // What every model has is not given up for an effect.
-    for (drive, known) in [(0.5, false), (0.005, true)] {
+    for (drive, known) in [(0.5, false), (0.005, false), (0.0005, true)] {
         let model = Fitted { terms: vec![0, WAVE], values: vec![drive, 0.05] };
         let node = fit::evaluated(&plant, model, 0);
         let why = refused(search.family, search.ahead, &base, &node).map(|(_, why)| why);

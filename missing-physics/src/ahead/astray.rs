@@ -1,0 +1,97 @@
+//! Models that predict well because they hardly heed the input.
+//!
+//! Beside a strong effect that is missing, what makes the input matter less predicts better: a mass so large that no force
+//! moves it, the process noise doing the rest. From there no effect shows, and what does is none. The balance of forces
+//! knows nothing of process noise: where its mass is far from that one the model has gone astray.
+
+use super::scales;
+use crate::family::{Fitted, ModelFamily};
+use crate::fit;
+use crate::report::Astray;
+
+/// Factor by which what every model has may be away from what least squares of the balance make of it.
+const FAR: f64 = 3.0;
+/// Shares of that from which effects are fitted, too: what is missing makes it too large there as well.
+const SHARES: [f64; 3] = [1.0, 1.0 / 3.0, 1.0 / 9.0];
+
+/// Other places of what every model has from which effects are fitted: where the base model is far from where it `began`.
+pub fn elsewhere<F: ModelFamily + ?Sized>(
+    family: &F,
+    began: &Fitted,
+    base: &Fitted,
+) -> Vec<Fitted> {
+    let known = scales::of(family, base).into_iter().map(|moved| moved.is_known());
+    let known: Vec<bool> = known.collect();
+    let far = |k: usize| {
+        let by = base.values[k] / began.values[k];
+        known[k] && !(1.0 / FAR..=FAR).contains(&by)
+    };
+    if !(0..known.len()).any(far) {
+        return Vec::new();
+    }
+    let at = |share: f64| {
+        let mut model = began.clone();
+        for (value, known) in model.values.iter_mut().zip(&known) {
+            *value *= if *known { share } else { 1.0 };
+        }
+        model.within(family)
+    };
+    SHARES.map(at).to_vec()
+}
+
+/// What every model has and is far larger in this one than the balance with the same effects makes it.
+pub fn astray<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Option<Astray> {
+    let near = family.in_part().unwrap_or(family);
+    let everywhere = vec![1.0; near.target().len()];
+    let balance = fit::refine(near, model.clone().within(near), &everywhere).model;
+    let known = scales::of(family, model).into_iter().map(|moved| moved.is_known());
+    let parameters = model.parameters(family).zip(known).enumerate();
+    parameters.filter(|(_, (_, known))| *known).find_map(|(k, ((term, parameter), _))| {
+        let (value, balance) = (model.values[k], balance.values[k]);
+        (value > FAR * balance).then(|| Astray {
+            parameter: term.key(parameter),
+            value,
+            balance,
+            unit: parameter.unit.clone(),
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::testing::{Plant, WAVE};
+
+    fn at(drive: f64, wave: f64) -> Fitted {
+        let mut model = Plant::model(&[(WAVE, &[wave])]);
+        model.values[0] = drive;
+        model
+    }
+
+    #[test]
+    fn effects_are_fitted_from_elsewhere_where_what_every_model_has_changed_by_a_factor() {
+        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        let drives = |began: f64, ends: f64| -> Vec<f64> {
+            let elsewhere = elsewhere(&plant, &at(began, 0.05), &at(ends, 0.05));
+            elsewhere.iter().map(|model| model.values[0]).collect()
+        };
+        for (began, ends) in [(1.0, 4.0), (1.0, 0.2)] {
+            assert_eq!(drives(began, ends), [1.0, 1.0 / 3.0, 1.0 / 9.0]);
+        }
+        assert!(drives(1.0, 2.0).is_empty() && drives(2.0, 1.0).is_empty());
+        // An effect of the base may go anywhere.
+        assert!(elsewhere(&plant, &at(1.0, 0.01), &at(1.0, 0.5)).is_empty());
+    }
+
+    #[test]
+    fn what_every_model_has_is_astray_where_it_is_far_larger_than_the_balance_makes_it() {
+        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        let told = astray(&plant, &at(4.0, 0.05)).unwrap();
+        assert_eq!((&*told.parameter, told.value, &*told.unit), ("drive.size", 4.0, "V"));
+        assert!((told.balance - 1.0).abs() < 0.01, "{}", told.balance);
+        assert_eq!(astray(&plant, &at(2.0, 0.05)), None);
+        // Noise makes what squares say too small, never so much too large.
+        assert_eq!(astray(&plant, &at(0.1, 0.05)), None);
+        assert_eq!(astray(&plant, &at(1.0, 5.0)), None);
+    }
+}
