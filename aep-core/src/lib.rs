@@ -23,7 +23,7 @@
 //! [`FnProblem`], one that can fail by [`FallibleProblem`]. A component of the domain can be
 //! logarithmic, so that the search covers its decades evenly. A simulator that takes many positions
 //! at once overrides [`Problem::evaluate_batch`]. Constraints are put around a problem by
-//! [`Constrained`]. A cost that is a sum of squares is a [`LeastSquares`] task: searched like any other,
+//! [`Constrained`], whole numbers come by [`Integers`]. A cost that is a sum of squares is a [`LeastSquares`] task: searched like any other,
 //! then taken to the bottom of its valley by [`polish`].
 //!
 //! **The method.** What to run is a [`Method`]; [`methods`] has all by name.
@@ -113,6 +113,7 @@ mod driver;
 mod engine;
 mod error;
 mod evaluate;
+mod integers;
 mod least_squares;
 mod lineages;
 mod meta_ep;
@@ -149,6 +150,7 @@ pub use driver::{Driver, Outcome, RunError, minimize};
 pub use engine::Engine;
 pub use error::{ConfigError, TellError};
 pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
+pub use integers::{Integers, Whole};
 pub use least_squares::{
     FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, least_squares, polish,
 };

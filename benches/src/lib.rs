@@ -3,3 +3,4 @@
 pub mod axes;
 pub mod discovery;
 pub mod peers;
+pub mod python;

@@ -32,15 +32,28 @@ const ZETA: Parameter =
 /// sqrt((1 - 1/sqrt 2)/2).
 const SILENT: f64 = 0.383;
 
-/// Why a coupling with this damping ratio is none.
-fn silent(zeta: f64) -> Option<Refused> {
-    (zeta >= SILENT).then_some(Refused {
+/// A frequency below this multiple of the least one is at it: what swings so slowly takes the mass along, and hides how
+/// large that is.
+const SLOW: f64 = 1.001;
+
+/// Why a coupling is none.
+fn not_one(found: &AsFound<'_>) -> Option<Refused> {
+    let (frequency, zeta) = (found.values[1], found.values[2]);
+    let slow = Refused {
+        name: "f",
+        value: frequency,
+        limit: SLOW * found.least[1],
+        unit_of: "f",
+        meaning: "it swings as slowly as it may",
+    };
+    let silent = Refused {
         name: "zeta",
         value: zeta,
         limit: SILENT,
         unit_of: "zeta",
         meaning: "nothing rings",
-    })
+    };
+    if frequency < slow.limit { Some(slow) } else { (zeta >= SILENT).then_some(silent) }
 }
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];
@@ -104,7 +117,7 @@ impl Effect for FlexibleCoupling {
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        silent(found.values[2])
+        not_one(found)
     }
 }
 

@@ -387,6 +387,13 @@ mod tests {
             };
             assert_eq!((effect.as_str(), meaning.as_str()), (name, "nothing rings"));
             assert_eq!((value.name.as_str(), value.value, value.unit.as_str()), ("zeta", 0.5, "1"));
+            let Some(Refusal::NotThatEffect { value, meaning, .. }) =
+                said(&family, name, &[("f", 1.0), ("zeta", 0.05)])
+            else {
+                panic!("{name} swings at the limit")
+            };
+            assert_eq!((value.name.as_str(), value.value, value.unit.as_str()), ("f", 1.0, "Hz"));
+            assert_eq!(meaning, "it swings as slowly as it may");
         }
     }
 

@@ -1,8 +1,11 @@
 //! Who is compared.
 
+use std::sync::Arc;
+
 use aep_core::random::{Purpose, Streams, uniform};
 use aep_core::{Domain, Ingredient, Lineages, Method, Start, methods};
 use benches::peers::{cmaes_bipop, fcmaes_cma};
+use benches::python::{Asked, INDIVIDUALS, Pool, Request};
 use fcmaes_core::CmaesParams;
 
 use crate::Result;
@@ -20,11 +23,22 @@ enum Kind {
     CmaesCrate,
     /// CMA-ES of the crate `fcmaes-core`, restarted with twice the population.
     FcmaesCma,
+    /// A method of Python, by its name there.
+    Python(&'static str, Arc<Pool>),
 }
 
+/// Methods of Python, by their names here and there.
+pub const PYTHON: [(&str, &str); 2] =
+    [("pycma", "pycma BIPOP"), ("scipy-de", "scipy differential_evolution")];
+
 impl Contestant {
-    pub fn named(name: &str) -> Result<Self> {
+    pub fn named(name: &str, pool: &Arc<Pool>) -> Result<Self> {
+        let python = PYTHON.into_iter().find(|(here, _)| *here == name);
         let kind = match name {
+            _ if python.is_some() => {
+                let (_, there) = python.unwrap_or_default();
+                Kind::Python(there, Arc::clone(pool))
+            }
             "cmaes-crate" => Kind::CmaesCrate,
             "fcmaes-cma" => Kind::FcmaesCma,
             _ => {
@@ -56,11 +70,15 @@ impl Contestant {
     pub fn solve(&self, task: &mut Task<'_>, seed: u64) -> Result<()> {
         match &self.kind {
             Kind::Ours(method) => ours(&**method, task, seed),
+            Kind::CmaesCrate | Kind::FcmaesCma if !task.whole().is_empty() => {
+                Err(format!("{} searches cubes: leave it out of --methods", self.name).into())
+            }
             Kind::CmaesCrate => cmaes_crate(task, seed),
             Kind::FcmaesCma => {
                 fcmaes_crate(task, seed);
                 Ok(())
             }
+            Kind::Python(peer, pool) => python(peer, pool, task, seed),
         }
     }
 }
@@ -78,7 +96,7 @@ fn ours(method: &dyn Method, task: &mut Task<'_>, seed: u64) -> Result<()> {
 
 fn cmaes_crate(task: &mut Task<'_>, seed: u64) -> Result<()> {
     let (lower, upper) = task.limits();
-    let (budget, target) = (task.budget(), Some(task.target()));
+    let (budget, target) = (task.budget(), task.is_exact().then(|| task.target()));
     let cube = (lower.len(), lower[0]..=upper[0]);
     cmaes_bipop(cube, budget, target, seed, |x| task.evaluate(x))
 }
@@ -109,4 +127,48 @@ fn fcmaes_crate(task: &mut Task<'_>, seed: u64) {
             search.tell(&costs);
         }
     }
+}
+
+/// First step of methods of Python, in widths of the domain: that of the others.
+const SIGMA: f64 = 0.2;
+
+impl Asked for Task<'_> {
+    fn cost(&mut self, unit: &[f64]) -> f64 {
+        self.evaluate_in_cube(unit)
+    }
+
+    fn residuals(&mut self, _: &[f64]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn is_over(&self) -> bool {
+        Task::is_over(self)
+    }
+}
+
+/// From the places where ours begin; one that gives up begins again.
+fn python(peer: &str, pool: &Pool, task: &mut Task<'_>, seed: u64) -> Result<()> {
+    let (lower, upper) = task.limits();
+    let domain = Domain::new(lower.clone(), upper.clone())?;
+    let whole = task.whole();
+    for again in 0.. {
+        let before = task.used();
+        let places = Start::new(&domain, seed + 1000 * again);
+        let places = places.population(INDIVIDUALS * lower.len())?;
+        let unit = |x: &[f64]| -> Vec<f64> {
+            x.iter()
+                .zip(lower.iter().zip(&upper))
+                .map(|(x, (lo, hi))| (x - lo) / (hi - lo))
+                .collect()
+        };
+        let population = places.batch().rows().map(unit).collect();
+        let (seed, budget) = (seed + 1000 * again, task.budget() - before);
+        let (whole, sigma) = (&whole[..], SIGMA);
+        let request = Request { peer, seed, budget, residuals: 0, sigma, whole, population };
+        pool.run(&request, task)?;
+        if task.is_over() || task.used() == before {
+            break;
+        }
+    }
+    Ok(())
 }

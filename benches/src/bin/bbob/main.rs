@@ -8,18 +8,21 @@
 //! Odd instances are told; even ones are what `aep-lineages` was tuned on.
 
 mod contestant;
+mod noise;
 mod suite;
 mod table;
 mod task;
 
 use std::error::Error;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use benches::python::Pool;
 use clap::Parser;
 use coco_rs::LogLevel;
 
-use contestant::Contestant;
-use suite::Plan;
+use contestant::{Contestant, PYTHON};
+use suite::{Kind, Plan};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
@@ -29,24 +32,27 @@ struct Arguments {
     /// Folder of the tables.
     #[arg(default_value = "bbob")]
     folder: PathBuf,
-    /// Methods of `aep_core::methods`, and the peers `cmaes-crate` and `fcmaes-cma`.
-    #[arg(
-        long,
-        value_delimiter = ',',
-        default_value = "aep,aep-practical,aep-practical-restarts,aep-lineages,de,cma-es,cmaes-crate,fcmaes-cma"
-    )]
+    /// Methods of `aep_core::methods`, and the peers `cmaes-crate`, `fcmaes-cma`, `pycma` and `scipy-de`; without it all that can
+    /// work on the suite.
+    #[arg(long, value_delimiter = ',')]
     methods: Vec<String>,
+    /// Which functions.
+    #[arg(long, value_enum, default_value = "bbob")]
+    suite: Kind,
+    /// Python with numpy, scipy and cma, for its methods.
+    #[arg(long, default_value = "python3")]
+    python: String,
     /// In place of `--methods`: aep-lineages, whole and without each of its ingredients (there are no residuals here).
     #[arg(long)]
     ablation: bool,
-    /// Components.
-    #[arg(long, value_delimiter = ',', default_value = "2,3,5,10,20")]
+    /// Components [default: 2,3,5,10,20; of mixint 5,10,20].
+    #[arg(long, value_delimiter = ',')]
     dimensions: Vec<usize>,
     /// Instances of each function.
     #[arg(long, value_delimiter = ',', default_value = "1,3,5,7,9,11,13,15")]
     instances: Vec<usize>,
-    /// Functions.
-    #[arg(long, value_delimiter = ',', default_value = FUNCTIONS)]
+    /// Functions [default: all].
+    #[arg(long, value_delimiter = ',')]
     functions: Vec<usize>,
     /// Evaluations per component.
     #[arg(long, default_value_t = 10_000)]
@@ -56,19 +62,41 @@ struct Arguments {
     observe: bool,
 }
 
-const FUNCTIONS: &str = "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24";
+/// Who is compared where nothing is said; the last ones search cubes only, and come from Python.
+const OURS: [&str; 6] =
+    ["aep", "aep-practical", "aep-practical-restarts", "aep-lineages", "de", "cma-es"];
+const CUBES: [&str; 2] = ["cmaes-crate", "fcmaes-cma"];
 
 fn main() -> Result<()> {
     LogLevel::Warning.set();
     let arguments = Arguments::parse();
+    let Arguments { folder, suite, budget, observe, instances, .. } = arguments;
     let contestants = if arguments.ablation {
         Contestant::ablation()
     } else {
-        arguments.methods.iter().map(|name| Contestant::named(name)).collect::<Result<_>>()?
+        let cubes = CUBES.into_iter().filter(|_| suite != Kind::Mixint);
+        let all = || OURS.into_iter().chain(cubes).map(str::to_owned);
+        let named = arguments.methods;
+        let (pool, installed) =
+            if named.is_empty() || PYTHON.iter().any(|(name, _)| named.contains(&(*name).into())) {
+                Pool::new(&arguments.python)
+            } else {
+                Pool::none()
+            };
+        let python = PYTHON.iter().filter(|(_, there)| installed.contains(&(*there).into()));
+        let names: Vec<String> = if named.is_empty() {
+            all().chain(python.map(|(here, _)| (*here).to_owned())).collect()
+        } else {
+            named
+        };
+        let pool = Arc::new(pool);
+        names.iter().map(|name| Contestant::named(name, &pool)).collect::<Result<_>>()?
     };
-    let Arguments { folder, dimensions, instances, functions, budget, observe, .. } = arguments;
+    let or = |given: Vec<usize>, all: Vec<usize>| if given.is_empty() { all } else { given };
+    let functions = or(arguments.functions, suite.functions());
+    let dimensions = or(arguments.dimensions, suite.dimensions());
     std::fs::create_dir_all(&folder)?;
-    let plan = Plan { dimensions, functions, instances, budget };
+    let plan = Plan { kind: suite, dimensions, functions, instances, budget };
     let mut runs = Vec::new();
     for contestant in &contestants {
         let own = plan.run(contestant, observe)?;

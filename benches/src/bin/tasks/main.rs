@@ -17,10 +17,10 @@
 //! The methods of Python run in processes that ask this one for every cost: the tasks, the count and the target are the same.
 
 mod advice;
+mod asked;
 mod case;
 mod ours;
 mod peers;
-mod python;
 mod result;
 mod widths;
 
@@ -30,9 +30,10 @@ use aep_core::{Lineages, methods};
 use clap::Parser;
 use rayon::prelude::*;
 
+use asked::Asked;
+use benches::python::Pool;
 use case::Case;
 use peers::Peer;
-use python::Pool;
 use result::{Cell, Group, Trial};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
@@ -102,7 +103,10 @@ impl Contestant {
                 Self::Other(peer) => peer.run(case, seed, &tally)?,
                 Self::Told => ours::run_told(&Lineages::default(), case, seed, &tally)?,
                 Self::Descents => ours::descend(case, seed, &tally)?,
-                Self::Python(name) => pool.run(name, case, seed, &tally)?,
+                Self::Python(name) => {
+                    let mut asked = Asked { case, tally: &tally };
+                    pool.run(&asked.request(name, seed)?, &mut asked)?;
+                }
             }
             if tally.is_over() || tally.used() == before {
                 break;

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use super::super::load::{Connection, Load, Pulled};
 use super::{
     About, AsFound, Correction, Effect, Element, FREQUENCY, LOAD, Onset, Parameter, Parameters,
-    Refused, Response, Slot, Step, ZETA, silent,
+    Refused, Response, Slot, Step, ZETA, not_one,
 };
 use crate::axis::Quantity;
 use crate::effects::{Along, SecondBody};
@@ -127,7 +127,7 @@ impl Effect for WithFriction {
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        silent(found.values[2])
+        not_one(found)
     }
 
     fn second_body(&self) -> Option<&'static SecondBody> {

@@ -6,8 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use serde_json::{Value, json};
 
-use crate::Result;
-use crate::case::{Case, Tally};
+type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 const SCRIPT: &str = include_str!("peers.py");
 /// What a process asks with.
@@ -15,6 +14,37 @@ const EVALUATE: u8 = b'E';
 const RESIDUALS: u8 = b'R';
 /// What it says at the end of a run.
 const DONE: u8 = b'D';
+
+/// A run that is asked for.
+pub struct Request<'a> {
+    /// The method, by the name that [`Pool::new`] gave.
+    pub peer: &'a str,
+    /// Seed.
+    pub seed: u64,
+    /// Evaluations.
+    pub budget: u64,
+    /// Residuals of a position; 0 where there are none.
+    pub residuals: usize,
+    /// First step, in widths of the cube.
+    pub sigma: f64,
+    /// Components that are whole numbers, and how many each can be.
+    pub whole: &'a [(usize, u32)],
+    /// Where to begin, in the cube of width 1: enough for the initial population of every method.
+    pub population: Vec<Vec<f64>>,
+}
+
+/// What a method asks for, by positions in the cube of width 1.
+pub trait Asked {
+    /// The cost.
+    fn cost(&mut self, unit: &[f64]) -> f64;
+    /// The residuals; none where there are none.
+    fn residuals(&mut self, unit: &[f64]) -> Vec<f64>;
+    /// Whether the target was reached or the budget used.
+    fn is_over(&self) -> bool;
+}
+
+/// Individuals of an initial population per component.
+pub const INDIVIDUALS: usize = 15;
 
 /// Processes that wait for work; as many as are asked for at once.
 pub struct Pool {
@@ -29,6 +59,11 @@ struct Process {
 }
 
 impl Pool {
+    /// One without methods.
+    pub fn none() -> (Self, Vec<String>) {
+        (Self { python: String::new(), idle: Mutex::default() }, Vec::new())
+    }
+
     /// A pool, and the names of what is installed; what is not is said.
     pub fn new(python: &str) -> (Self, Vec<String>) {
         let pool = Self { python: python.into(), idle: Mutex::default() };
@@ -59,13 +94,16 @@ impl Pool {
     }
 
     /// One run, until it is over or the method gives up.
-    pub fn run(&self, peer: &str, case: &Case, seed: u64, tally: &Tally<'_>) -> Result<()> {
+    ///
+    /// # Errors
+    /// When the process ends before the run does.
+    pub fn run(&self, request: &Request<'_>, asked: &mut dyn Asked) -> Result<()> {
         let waiting = self.idle().pop();
         let mut process = match waiting {
             Some(process) => process,
             None => Process::start(&self.python)?.0,
         };
-        process.run(peer, case, seed, tally)?;
+        process.run(request, asked)?;
         self.idle().push(process);
         Ok(())
     }
@@ -88,13 +126,12 @@ impl Process {
         Ok((Self { child, requests, answers }, peers))
     }
 
-    fn run(&mut self, peer: &str, case: &Case, seed: u64, tally: &Tally<'_>) -> Result<()> {
-        let n = case.domain().dimension();
-        // Enough for the initial population of every method: 15 individuals a component.
-        let population = case.population(seed, 15 * n)?;
-        let request = json!({"peer": peer, "seed": seed % (1 << 31), "budget": tally.left(),
-            "residuals": case.residuals(), "population": population});
-        writeln!(self.requests, "{request}")?;
+    fn run(&mut self, request: &Request<'_>, asked: &mut dyn Asked) -> Result<()> {
+        let Request { peer, seed, budget, residuals, sigma, whole, population } = request;
+        let n = population.first().ok_or("a run without a start")?.len();
+        let line = json!({"peer": peer, "seed": seed % (1 << 31), "budget": budget, "residuals": residuals,
+            "sigma": sigma, "whole": whole, "population": population});
+        writeln!(self.requests, "{line}")?;
         loop {
             let mut kind = [0];
             self.answers.read_exact(&mut kind)?;
@@ -109,12 +146,12 @@ impl Process {
                         .map(|bytes| f64::from_le_bytes(*bytes))
                         .collect();
                     let numbers = match kind[0] {
-                        EVALUATE => vec![tally.cost_in_cube(&unit)],
-                        _ => tally.residuals(&case.in_domain(&unit)),
+                        EVALUATE => vec![asked.cost(&unit)],
+                        _ => asked.residuals(&unit),
                     };
                     let mut answer: Vec<u8> =
                         numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
-                    answer.push(u8::from(tally.is_over()));
+                    answer.push(u8::from(asked.is_over()));
                     self.requests.write_all(&answer)?;
                 }
                 DONE => return Ok(()),

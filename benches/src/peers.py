@@ -1,4 +1,4 @@
-"""Optimizers of Python for the table of the tasks: started by it, one run a request, every cost asked for.
+"""Optimizers of Python for the tables of the benchmarks: started by them, one run a request, every cost asked for.
 
 A request is a line of JSON; then, for each evaluation, an `E` (or an `R`) and the position in the cube of width 1 go out, the cost
 (or the residuals) and whether the run is over come back; a `D` ends the run. Numbers are little-endian doubles.
@@ -10,8 +10,6 @@ import os
 import struct
 import sys
 import warnings
-
-SIGMA = 0.3
 
 # What a library prints must not come between.
 channel = os.fdopen(os.dup(1), "wb", buffering=0)
@@ -51,16 +49,42 @@ def pycma(task):
         "verbose": -9,
         "verb_disp": 0,
         "verb_log": 0,
+        "integer_variables": [component for component, _ in task["whole"]],
     }
-    cma.fmin2(cost, lambda: next(starts, places.random(n)), SIGMA, options, restarts=9, bipop=True)
+    counts = numpy.ones(n)
+    for component, count in task["whole"]:
+        counts[component] = count
+    # Whole numbers are one apart for the method, and the cube is as wide as there are of them.
+    options["bounds"] = [[-0.5 if k > 1 else 0 for k in counts], [k - 0.5 if k > 1 else 1 for k in counts]]
+    low = numpy.array(options["bounds"][0])
+    options["CMA_stds"] = counts
+    cma.fmin2(
+        lambda x: cost((numpy.asarray(x) - low) / counts),
+        lambda: low + counts * next(starts, places.random(n)),
+        task["sigma"],
+        options,
+        restarts=9,
+        bipop=True,
+    )
 
 
 def differential_evolution(task):
     from scipy.optimize import Bounds, differential_evolution
 
     n = len(task["population"][0])
+    low, counts, whole = [0.0] * n, [1.0] * n, [False] * n
+    for component, count in task["whole"]:
+        low[component], counts[component], whole[component] = -0.5, count, True
+    # Whole numbers run from 0; all else is as wide as the cube.
+    limits = Bounds([0.0] * n, [count - 1 if w else 1.0 for count, w in zip(counts, whole)])
+    start = [[min(int(u * count), count - 1) if w else u for u, count, w in zip(row, counts, whole)] for row in task["population"]]
     differential_evolution(
-        cost, Bounds([0] * n, [1] * n), init=task["population"], maxiter=10**9, rng=task["seed"]
+        lambda x: cost([(v - a) / count for v, a, count in zip(x, low, counts)]),
+        limits,
+        init=start,
+        integrality=whole,
+        maxiter=10**9,
+        rng=task["seed"],
     )
 
 
