@@ -11,6 +11,8 @@ pub struct Facts {
     pub noisy: bool,
     /// Whether the cost is a sum of squared residuals that the task gives ([`crate::LeastSquares`]).
     pub residuals: bool,
+    /// Whether some components are whole numbers ([`crate::Integers`]).
+    pub integers: bool,
     /// Evaluations that run at the same time.
     pub width: usize,
 }
@@ -18,7 +20,7 @@ pub struct Facts {
 impl Facts {
     /// A task of so many components: without noise, nothing known but the cost, one evaluation at a time.
     pub fn new(dimension: usize) -> Self {
-        Self { dimension, noisy: false, residuals: false, width: 1 }
+        Self { dimension, noisy: false, residuals: false, integers: false, width: 1 }
     }
 
     /// The same with a cost that is, or is not, subject to chance.
@@ -31,6 +33,12 @@ impl Facts {
     #[must_use]
     pub fn with_residuals(self) -> Self {
         Self { residuals: true, ..self }
+    }
+
+    /// The same with components that are, or are not, whole numbers.
+    #[must_use]
+    pub fn with_integers(self, integers: bool) -> Self {
+        Self { integers, ..self }
     }
 
     /// The same with `width` evaluations at the same time.
@@ -60,7 +68,7 @@ struct Rule {
 }
 
 /// The first one that holds decides; the last one always does. What they are worth:
-/// docs/optimizers.md, "Tasks and peers".
+/// docs/optimizers.md, "Tasks and peers" and "Noise and whole numbers".
 const RULES: &[Rule] = &[
     Rule {
         holds: |facts, _| facts.residuals,
@@ -68,7 +76,12 @@ const RULES: &[Rule] = &[
         why: "descends on the residuals, with a search beside it",
     },
     Rule {
-        holds: |facts, budget| facts.dimension <= 5 && budget >= 5_000,
+        holds: |facts, budget| facts.integers && budget >= 1_000,
+        method: "aep-practical-restarts",
+        why: "whole numbers and many evaluations: it solves the most",
+    },
+    Rule {
+        holds: |facts, budget| facts.dimension <= 5 && budget >= 5_000 && !facts.noisy,
         method: "de",
         why: "few parameters and many evaluations: it misses the fewest best minima",
     },
@@ -130,7 +143,8 @@ mod tests {
     #[test]
     fn residuals_are_for_the_method_that_descends_on_them() {
         let few = Facts::new(5).with_noise(true);
-        assert_eq!(recommend(&few, 50_000).method.name, "de");
+        assert_eq!(recommend(&few, 50_000).method.name, "aep-lineages");
+        assert_eq!(recommend(&few.with_noise(false), 50_000).method.name, "de");
         assert_eq!(recommend(&few.with_residuals(), 50_000).method.name, "aep-lineages");
     }
 
@@ -141,6 +155,16 @@ mod tests {
         assert_eq!(advised(5, 50_000), "de");
         assert_eq!(advised(5, 5_000), "aep-lineages");
         assert_eq!(advised(20, 1_000_000), "aep-lineages");
+    }
+
+    #[test]
+    fn whole_numbers_and_many_evaluations_are_for_the_method_that_solves_most() {
+        let advised = |n, budget| recommend(&Facts::new(n).with_integers(true), budget).method.name;
+        assert_eq!(
+            (advised(5, 20_000), advised(40, 40_000)),
+            ("aep-practical-restarts", "aep-practical-restarts")
+        );
+        assert_eq!(advised(10, 5_000), "aep-lineages");
     }
 
     #[test]

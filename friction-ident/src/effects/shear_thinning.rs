@@ -1,12 +1,15 @@
 //! Viscous friction that saturates: the lubricant thins under shear.
 
-use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, AsFound, CLaw, Effect, Motion, Parameter, Parameters, Refused, Slot, Smooth};
 use crate::axis::Quantity;
 
 /// `dF tanh(v / v_n)`: viscous with `dF / v_n` at low speed, limited by the shear stress that the
 /// lubricant can bear at high speed.
 #[derive(Clone, Copy, Debug)]
 pub struct ShearThinning;
+
+/// A speed below this multiple of the least one is at it.
+const AT_ONCE: f64 = 1.001;
 
 static ABOUT: About = About {
     name: "shear-thinning",
@@ -42,6 +45,14 @@ impl Effect for ShearThinning {
 }",
             ..CLaw::NONE
         })
+    }
+
+    /// What is thin at any speed is a friction level, smoothed where the axis reverses.
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        let (value, limit) = (found.values[1], AT_ONCE * found.least[1]);
+        let meaning = "it thins at the lowest speed of its search: a friction level";
+        let refused = Refused { name: "v_n", value, limit, unit_of: "v_n", meaning };
+        (value < limit).then_some(refused)
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

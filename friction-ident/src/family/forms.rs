@@ -398,6 +398,20 @@ mod tests {
     }
 
     #[test]
+    fn what_thins_at_the_lowest_speed_is_a_friction_level() {
+        let family = family();
+        let term = family.terms.iter().find(|term| term.name == "shear-thinning").unwrap();
+        let least = term.parameters.iter().find(|p| p.name == "v_n").unwrap().lower;
+        let refused = |v_n: f64| said(&family, "shear-thinning", &[("v_n", v_n)]);
+        assert_eq!(refused(1.1 * least), None);
+        let Some(Refusal::NotThatEffect { value, meaning, .. }) = refused(least) else {
+            panic!("a level is shear thinning")
+        };
+        assert_eq!((value.value, value.unit.as_str()), (least, "m/s"));
+        assert!(meaning.ends_with("a friction level"), "{meaning}");
+    }
+
+    #[test]
     fn a_gap_must_be_wider_than_its_contact_gives() {
         // A third of the force bends the contact: 7 N.
         let family = family();
