@@ -17,6 +17,12 @@ pub fn remains(what: &Remains) -> String {
             let course = self::course(course);
             format!("{} {does}: {course}. Why, this recording does not show.", capital(rival))
         }
+        Remains::Outdone { by, refusal, instead_of, nats } if instead_of.is_empty() => format!(
+            "{} lowers the prediction error by {nats:.0} nats, but is not that ({}): something is missing that acts like it and \
+             is not in the library.",
+            by.join(" + "),
+            super::refusal(refusal)
+        ),
         Remains::Outdone { by, refusal, instead_of, nats } => format!(
             "{} predicts better than {} by {nats:.0} nats, but is not that ({}): what is missing acts like it and is not in \
              the library.",

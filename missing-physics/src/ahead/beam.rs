@@ -178,6 +178,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             let last = self.plainest(needed, &costs);
             if let Some((term, refusal)) = refused(self.family, self.ahead, &climb.base, &last) {
                 // Its last fit took it there.
+                climb.refused.push((last.clone(), refusal.clone()));
                 let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
                 if let Some((_, cost, without)) = costs.iter().find(is).or(costs.last()) {
                     let (size, cost) = (costs.len() - 1, negative(*cost));

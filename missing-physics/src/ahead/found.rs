@@ -267,8 +267,7 @@ impl Found {
 
     /// Whether a model that errs more than it may leaves nearly all of what the base lacks.
     fn leaves_most(&self, top: &Node, budget: f64, thresholds: &Thresholds) -> bool {
-        let beyond = |node: &Node| (node.scale / budget).powi(2) - 1.0;
-        top.scale > thresholds.complete * budget && beyond(top) > LEFT * beyond(&self.base)
+        top.scale > thresholds.complete * budget && leaves_most(&self.base, top, budget)
     }
 
     /// Whether a term, in whatever form, is among `terms`.
@@ -276,6 +275,12 @@ impl Found {
         let main = |t: usize| family.form_of(t).unwrap_or(t);
         terms.iter().any(|other| main(*other) == main(term))
     }
+}
+
+/// Whether a model leaves nearly all of what the base errs beyond the sensors.
+pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
+    let beyond = |node: &Node| (node.scale / budget).powi(2) - 1.0;
+    beyond(base) <= 0.0 || beyond(node) > LEFT * beyond(base)
 }
 
 /// What a model leaves, whether its errors show it or not.

@@ -58,7 +58,7 @@ pub enum Remains {
         by: Vec<String>,
         /// Why it is not what it is called.
         refusal: Refusal,
-        /// The effects that are not named for it.
+        /// The effects that are not named for it; none where nothing else was found.
         instead_of: Vec<String>,
         /// What it gains over the model with them, nats.
         nats: f64,

@@ -2,9 +2,11 @@
 //!
 //! What ends at a limit, or lost what makes it that effect, is not named. It still shows how much of the error as few
 //! effects can foretell. Where those that would be named in its place foretell less, they imitate a part of what is
-//! missing and are not its cause. Effects that the refused model has, too, stay.
+//! missing and are not its cause. Effects that the refused model has, too, stay. And where nothing else was found, but a
+//! refused model foretells what the base errs beyond the sensors, something is missing.
 
 use super::{Climb, Search};
+use crate::ahead::found::leaves_most;
 use crate::ahead::node::Node;
 use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
@@ -14,11 +16,16 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     pub(super) fn outdone(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
         let base = &climb.base;
         let added = Self::added(base, last);
+        let is_rival = |refused: &Node| {
+            if added.is_empty() {
+                return !leaves_most(base, refused, self.ahead.budget());
+            }
+            Self::added(base, refused).len() <= added.len() && !self.stands_for(refused, last)
+        };
         let (refused, refusal, by) = climb
             .refused
             .iter()
-            .filter(|(refused, _)| Self::added(base, refused).len() <= added.len())
-            .filter(|(refused, _)| !self.stands_for(refused, last))
+            .filter(|(refused, _)| is_rival(refused))
             .map(|(node, refusal)| (node, refusal, self.comparison.compare(last, node)))
             .max_by(|a, b| a.2.nats.total_cmp(&b.2.nats))?;
         let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);

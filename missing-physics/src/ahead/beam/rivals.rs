@@ -30,7 +30,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
     pub(super) fn instead(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
         let rival = self.rivalled(climb, last);
-        let takes_back = rival.as_ref().is_some_and(|does| does.instead_of > 0);
+        // Beside the base a rival says more: what its course is.
+        let nothing = Self::added(&climb.base, last).is_empty();
+        let takes_back = rival.as_ref().is_some_and(|does| nothing || does.instead_of > 0);
         let outdone = if takes_back { None } else { self.outdone(climb, last) };
         outdone.or_else(|| rival.map(|does| (does.without, does.found)))
     }

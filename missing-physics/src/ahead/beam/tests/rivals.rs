@@ -92,6 +92,22 @@ fn a_refused_set_takes_nothing_back_with_more_effects_or_where_it_predicts_no_be
 }
 
 #[test]
+fn where_nothing_was_found_a_refused_set_that_explains_it_says_that_something_is_missing() {
+    let plant = Plant::new(13, &[(WAVE, &[0.05])]);
+    let told = |wave: f64| outdone(&plant, &[], &[(WAVE, &[wave])]);
+    let (without, remains) = told(0.05).unwrap();
+    assert!(without.effects(&plant).is_empty());
+    let Remains::Outdone { by, instead_of, nats, .. } = remains else { panic!("{remains:?}") };
+    assert_eq!((by, instead_of), (vec!["wave".to_owned()], Vec::new()));
+    assert!(nats > 100.0, "{nats}");
+    // It predicts better, and leaves nearly all of it.
+    assert!(told(0.002).is_none());
+    // Nothing is missing.
+    let plant = Plant::new(13, &[]);
+    assert!(outdone(&plant, &[], &[(WAVE, &[1e-3])]).is_none());
+}
+
+#[test]
 fn a_refused_set_takes_nothing_back_that_it_is_another_way_to_write() {
     let bent: (usize, &[f64]) = (BENT, &[0.05, 0.05]);
     let plant = Plant::new(14, &[bent]);
