@@ -5,8 +5,8 @@
 //! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects. A family
 //! that says at once what a whole recording should be is seen through its [`Residuals`].
 
-pub mod astray;
-mod autoregression;
+mod astray;
+pub mod autoregression;
 mod beam;
 pub mod chance;
 pub mod compare;
