@@ -34,11 +34,10 @@ pub const PYTHON: [(&str, &str); 2] =
 impl Contestant {
     pub fn named(name: &str, pool: &Arc<Pool>) -> Result<Self> {
         let python = PYTHON.into_iter().find(|(here, _)| *here == name);
+        if let Some((_, there)) = python {
+            return Ok(Self { name: name.into(), kind: Kind::Python(there, Arc::clone(pool)) });
+        }
         let kind = match name {
-            _ if python.is_some() => {
-                let (_, there) = python.unwrap_or_default();
-                Kind::Python(there, Arc::clone(pool))
-            }
             "cmaes-crate" => Kind::CmaesCrate,
             "fcmaes-cma" => Kind::FcmaesCma,
             _ => {

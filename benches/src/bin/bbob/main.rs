@@ -76,19 +76,22 @@ fn main() -> Result<()> {
     } else {
         let cubes = CUBES.into_iter().filter(|_| suite != Kind::Mixint);
         let all = || OURS.into_iter().chain(cubes).map(str::to_owned);
-        let named = arguments.methods;
+        let mut names = arguments.methods;
+        let is_asked =
+            |(here, _): &&(&str, &str)| names.is_empty() || names.contains(&(*here).into());
+        let asked: Vec<_> = PYTHON.iter().filter(is_asked).collect();
         let (pool, installed) =
-            if named.is_empty() || PYTHON.iter().any(|(name, _)| named.contains(&(*name).into())) {
-                Pool::new(&arguments.python)
-            } else {
-                Pool::none()
-            };
-        let python = PYTHON.iter().filter(|(_, there)| installed.contains(&(*there).into()));
-        let names: Vec<String> = if named.is_empty() {
-            all().chain(python.map(|(here, _)| (*here).to_owned())).collect()
-        } else {
-            named
-        };
+            if asked.is_empty() { Pool::none() } else { Pool::new(&arguments.python) };
+        let (here, missing): (Vec<_>, Vec<_>) =
+            asked.into_iter().partition(|(_, there)| installed.contains(&(*there).into()));
+        if names.is_empty() {
+            names = all().chain(here.into_iter().map(|(name, _)| (*name).to_owned())).collect();
+        } else if let Some((name, there)) = missing.first() {
+            return Err(format!(
+                "{name} is not installed ({there})\n  give a Python that has it: --python"
+            )
+            .into());
+        }
         let pool = Arc::new(pool);
         names.iter().map(|name| Contestant::named(name, &pool)).collect::<Result<_>>()?
     };
