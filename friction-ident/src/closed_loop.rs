@@ -158,7 +158,7 @@ pub fn closed_loop(
     for k in 0..samples {
         let (x, v) = (batch.position()[0], batch.velocity()[0]);
         let sample = sample(reference, k, quantise(batch.shown()[0], setup.encoder_resolution));
-        if !(x.is_finite() && v.is_finite()) {
+        if !batch.is_finite(0) {
             let effect = batch.culprit(0);
             return Err(SimulationError::NotFinite { time: sample.time, effect }.into());
         }

@@ -298,6 +298,12 @@ impl Plants {
         }
     }
 
+    /// Whether plant `i` is where numbers reach. What its sensor shows can leave them before the position does.
+    pub(crate) fn is_finite(&self, i: usize) -> bool {
+        let state = [self.position()[i], self.velocity()[i], self.shown()[i]];
+        state.iter().all(|x| x.is_finite())
+    }
+
     /// Which effect makes lane `i` run away: one whose force is not finite, or else the largest.
     pub(crate) fn culprit(&mut self, i: usize) -> String {
         let mut worst = (0.0, "the mass".to_owned());

@@ -109,7 +109,7 @@ pub fn simulate(
         for j in 0..steps {
             batch.step(&[duration], &[input.mean(k, j, steps)]);
         }
-        if !(batch.position()[0].is_finite() && batch.velocity()[0].is_finite()) {
+        if !batch.is_finite(0) {
             let effect = batch.culprit(0);
             return Err(SimulationError::NotFinite { time: input.time[k + 1], effect });
         }

@@ -99,3 +99,13 @@ fn a_prediction_that_is_far_off_supplies_no_energy() {
     let out = run(&model, &times(400, 1e-3), start, |_| 0.0);
     assert!(out.velocity.iter().all(|v| v.abs() <= 0.030_55 * (1.0 + 1e-9)));
 }
+
+#[test]
+fn a_plant_that_runs_away_behind_an_encoder_says_so_before_the_encoder_shows_nonsense() {
+    let encoder: (&str, &[(&str, f64)]) = ("encoder", &[("a", 1e-6), ("p", 1e-4)]);
+    let model = plant(0.5, &[("spring", &[("k", -1e5)]), encoder]);
+    let time = times(2_000, 1e-3);
+    let force = vec![0.0; time.len()];
+    let told = simulate(&model, &Input::new(&time, &force, Hold::Sampled), &Start::at(0.01, 0.0));
+    assert!(matches!(told, Err(SimulationError::NotFinite { .. })), "{told:?}");
+}
