@@ -126,6 +126,22 @@ def model(hidden, velocity, acceleration, frictionless):
     return 0.93 * force if hidden == "model-gain" else force
 
 
+def recorded(how, force, seen):
+    """Force and position as people's files have them."""
+    if how == "coarse":
+        return force, np.round(seen / 2e-5) * 2e-5
+    if how == "filtered":
+        keep, lagged = np.exp(-SAMPLE / 1e-3), np.zeros_like(force)
+        for k in range(len(force)):
+            lagged[k] = keep * lagged[max(k - 1, 0)] + (1 - keep) * force[k]
+        return lagged, seen
+    if how == "early":
+        return np.roll(force, -1), seen
+    if how == "noisy":
+        return force + 2.0 * np.random.default_rng(5).standard_normal(len(force)), seen
+    return force, seen
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--hide", choices=HIDDEN, default="stribeck")
@@ -134,11 +150,18 @@ def main():
     parser.add_argument("--from-encoder", action="store_true", help="the model sees the encoder, not the states")
     parser.add_argument("--frictionless", action="store_true", help="the model is a mass and nothing else")
     parser.add_argument("--measured", action="store_true", help="the force is measured with noise, not the command")
+    parser.add_argument(
+        "--recorded",
+        choices=["plain", "coarse", "filtered", "early", "noisy"],
+        default="plain",
+        help="position in steps of 20 um; force behind a lag of 1 ms, a sample early, with 2 N of noise",
+    )
     parser.add_argument("--out", required=True)
     args = parser.parse_args()
     time, force, seen, states = simulate(args.hide, args.seed, args.seconds, args.measured)
     velocity, acceleration = from_encoder(seen) if args.from_encoder else (states[:, 1], states[:, 2])
     given = model(args.hide, velocity, acceleration, args.frictionless)
+    force, seen = recorded(args.recorded, force, seen)
     with open(args.out, "w") as out:
         out.write("time_s,force_N,position_m,model_N\n")
         for row in zip(time, force, seen, given):

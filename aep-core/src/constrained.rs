@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::{Batch, Domain, Errors, Points, Problem, Scalar};
+use crate::{Batch, Domain, Points, Problem, Scalar};
 
 /// A problem with inequality constraints `g_i`(x) <= 0, by Deb's feasibility rule: what is feasible is
 /// better than what is not, of two feasible positions the one with the lower cost is better, of two
@@ -96,20 +96,8 @@ impl<T: Scalar, P: Problem<T>, G: Fn(&[T]) -> Vec<T> + Sync> Problem<T> for Cons
         }
     }
 
-    fn batch_size(&self) -> usize {
-        self.problem.batch_size()
-    }
-
-    fn errors(&self) -> Errors {
-        self.problem.errors()
-    }
-
-    fn is_broken_off(&self) -> bool {
-        self.problem.is_broken_off()
-    }
-
-    fn identity(&self) -> String {
-        self.problem.identity()
+    fn around(&self) -> Option<&dyn Problem<T>> {
+        Some(&self.problem)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Components that are whole numbers.
 
-use crate::{Batch, ConfigError, Domain, Errors, Points, Problem, Scalar};
+use crate::{Batch, ConfigError, Domain, Points, Problem, Scalar};
 
 /// Which components of a box are whole numbers, and between which.
 ///
@@ -123,27 +123,15 @@ impl<T: Scalar, P: Problem<T>> Problem<T> for Integers<P, T> {
         self.problem.evaluate_batch(rounded.batch(), costs);
     }
 
-    fn batch_size(&self) -> usize {
-        self.problem.batch_size()
-    }
-
-    fn errors(&self) -> Errors {
-        self.problem.errors()
-    }
-
-    fn is_broken_off(&self) -> bool {
-        self.problem.is_broken_off()
-    }
-
-    fn identity(&self) -> String {
-        self.problem.identity()
+    fn around(&self) -> Option<&dyn Problem<T>> {
+        Some(&self.problem)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Budget, FnProblem, methods, minimize};
+    use crate::{Budget, Constrained, Errors, FnProblem, methods, minimize};
     use proptest::prelude::*;
 
     fn integers<F: Fn(&[f64]) -> f64 + Sync>(cost: F, whole: &[bool]) -> Integers<FnProblem<F>> {
@@ -195,6 +183,39 @@ mod tests {
         assert_eq!(of(&[true, true]), Err(limits));
         assert_eq!(of(&[false, true]), Ok(()));
         assert!(matches!(of(&[true]), Err(ConfigError::Length { found: 1, expected: 2, .. })));
+    }
+
+    #[test]
+    fn what_is_not_said_here_is_asked_of_the_problem_within() {
+        struct Broken(Domain);
+        impl Problem for Broken {
+            fn domain(&self) -> &Domain {
+                &self.0
+            }
+            fn evaluate(&self, _: &[f64]) -> f64 {
+                f64::NAN
+            }
+            fn batch_size(&self) -> usize {
+                7
+            }
+            fn errors(&self) -> Errors {
+                Errors { count: 3, first: Some("broken".into()) }
+            }
+            fn is_broken_off(&self) -> bool {
+                true
+            }
+            fn identity(&self) -> String {
+                "within".into()
+            }
+        }
+        let told = |problem: &dyn Problem| {
+            let (size, errors) = (problem.batch_size(), problem.errors());
+            (size, errors, problem.is_broken_off(), problem.identity())
+        };
+        let broken = || Broken(Domain::cube(1, 0.0, 3.0).unwrap());
+        let whole = Integers::new(broken(), &[true]).unwrap();
+        assert_eq!(told(&whole), told(&broken()));
+        assert_eq!(told(&Constrained::new(&whole, 1.0, |_: &[f64]| vec![])), told(&broken()));
     }
 
     proptest! {

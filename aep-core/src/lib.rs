@@ -23,8 +23,8 @@
 //! [`FnProblem`], one that can fail by [`FallibleProblem`]. A component of the domain can be
 //! logarithmic, so that the search covers its decades evenly. A simulator that takes many positions
 //! at once overrides [`Problem::evaluate_batch`]. Constraints are put around a problem by
-//! [`Constrained`], whole numbers come by [`Integers`]. A cost that is a sum of squares is a [`LeastSquares`] task: searched like any other,
-//! then taken to the bottom of its valley by [`polish`].
+//! [`Constrained`], whole numbers by [`Integers`]. A cost that is a sum of squares is a [`LeastSquares`]
+//! task: searched like any other, then taken to the bottom of its valley by [`polish`].
 //!
 //! **The method.** What to run is a [`Method`]; [`methods`] has all by name.
 //!

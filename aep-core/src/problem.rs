@@ -43,25 +43,30 @@ pub trait Problem<T: Scalar = f64>: Sync {
         }
     }
 
+    /// The problem that this one is put around: what follows is asked of it where nothing else is said here.
+    fn around(&self) -> Option<&dyn Problem<T>> {
+        None
+    }
+
     /// How many positions [`Problem::evaluate_batch`] likes to get at once: parallel evaluators
     /// cut a generation into pieces of this size. 1 for a problem without batch evaluation.
     fn batch_size(&self) -> usize {
-        1
+        self.around().map_or(1, Problem::batch_size)
     }
 
     /// Evaluations that ended in an error so far, for problems that can fail.
     fn errors(&self) -> Errors {
-        Errors::default()
+        self.around().map_or_else(Errors::default, Problem::errors)
     }
 
     /// Whether the last evaluation was broken off, for problems that can be (Ctrl-C in the middle of a generation, no worker
     /// left): its costs are then not told, and the run ends as interrupted, as it stood before that generation.
     fn is_broken_off(&self) -> bool {
-        false
+        self.around().is_some_and(Problem::is_broken_off)
     }
 
     /// The same task by its residuals, where the cost is the sum of their squares: a method that descends by them is
-    /// told them.
+    /// told them. That of a problem around which another one is put is not asked: its cost is another.
     fn as_least_squares(&self) -> Option<&dyn LeastSquares> {
         None
     }
@@ -69,7 +74,7 @@ pub trait Problem<T: Scalar = f64>: Sync {
     /// What tells this problem from others of the same domain: its name, its data, its settings. A
     /// checkpoint of a run on another problem is refused; nothing is told apart by default.
     fn identity(&self) -> String {
-        String::new()
+        self.around().map_or_else(String::new, Problem::identity)
     }
 }
 
@@ -160,6 +165,10 @@ impl<T: Scalar, P: Problem<T> + ?Sized> Problem<T> for &P {
 
     fn evaluate_batch(&self, points: Batch<'_, T>, costs: &mut [T]) {
         (**self).evaluate_batch(points, costs);
+    }
+
+    fn around(&self) -> Option<&dyn Problem<T>> {
+        (**self).around()
     }
 
     fn batch_size(&self) -> usize {

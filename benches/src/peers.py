@@ -35,32 +35,37 @@ def cost(position):
     return ask(b"E", position, 1)[0]
 
 
+def space(task):
+    """Where the cube lies for methods that know whole numbers: these run from 0 and are one apart, so that such a component is
+    as wide as there are of them. Lower corner, widths, and which are whole."""
+    n = len(task["population"][0])
+    low, width, whole = [0.0] * n, [1.0] * n, [False] * n
+    for component, count in task["whole"]:
+        low[component], width[component], whole[component] = -0.5, count, True
+    return low, width, whole
+
+
 def pycma(task):
     import cma
     import numpy
 
     places = numpy.random.default_rng(task["seed"])
     starts = iter([task["population"][0]])
-    n = len(task["population"][0])
+    low, width, whole = space(task)
+    low, width = numpy.array(low), numpy.array(width)
     options = {
-        "bounds": [0, 1],
+        "bounds": [low, low + width],
+        "CMA_stds": width,
+        "integer_variables": list(numpy.flatnonzero(whole)),
         "maxfevals": task["budget"],
         "seed": task["seed"] + 1,
         "verbose": -9,
         "verb_disp": 0,
         "verb_log": 0,
-        "integer_variables": [component for component, _ in task["whole"]],
     }
-    counts = numpy.ones(n)
-    for component, count in task["whole"]:
-        counts[component] = count
-    # Whole numbers are one apart for the method, and the cube is as wide as there are of them.
-    options["bounds"] = [[-0.5 if k > 1 else 0 for k in counts], [k - 0.5 if k > 1 else 1 for k in counts]]
-    low = numpy.array(options["bounds"][0])
-    options["CMA_stds"] = counts
     cma.fmin2(
-        lambda x: cost((numpy.asarray(x) - low) / counts),
-        lambda: low + counts * next(starts, places.random(n)),
+        lambda x: cost((numpy.asarray(x) - low) / width),
+        lambda: low + width * next(starts, places.random(len(low))),
         task["sigma"],
         options,
         restarts=9,
@@ -69,17 +74,18 @@ def pycma(task):
 
 
 def differential_evolution(task):
+    import numpy
     from scipy.optimize import Bounds, differential_evolution
 
-    n = len(task["population"][0])
-    low, counts, whole = [0.0] * n, [1.0] * n, [False] * n
-    for component, count in task["whole"]:
-        low[component], counts[component], whole[component] = -0.5, count, True
-    # Whole numbers run from 0; all else is as wide as the cube.
-    limits = Bounds([0.0] * n, [count - 1 if w else 1.0 for count, w in zip(counts, whole)])
-    start = [[min(int(u * count), count - 1) if w else u for u, count, w in zip(row, counts, whole)] for row in task["population"]]
+    low, width, whole = space(task)
+    low, width = numpy.array(low), numpy.array(width)
+    start = low + width * numpy.array(task["population"])
+    # A whole number is its own limit.
+    edge = numpy.where(whole, 0.5, 0.0)
+    limits = Bounds(low + edge, low + width - edge)
+    start = numpy.clip(numpy.where(whole, numpy.round(start), start), limits.lb, limits.ub)
     differential_evolution(
-        lambda x: cost([(v - a) / count for v, a, count in zip(x, low, counts)]),
+        lambda x: cost((x - low) / width),
         limits,
         init=start,
         integrality=whole,

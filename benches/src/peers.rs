@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use aep_core::{Domain, Start};
 use cmaes::DVector;
 use cmaes::restart::{BIPOP, RestartOptions, RestartStrategy};
 use fcmaes_core::{Cmaes, CmaesParams, Fitness};
@@ -28,6 +29,23 @@ pub fn cmaes_bipop(
     let restarts = options.build().map_err(|error| format!("{error:?}"))?;
     restarts.run_with_reuse(|x: &DVector<f64>| cost(x.as_slice()));
     Ok(())
+}
+
+/// The initial population that our methods have from a seed, in the cube of width 1.
+///
+/// # Errors
+/// When there is no such population.
+pub fn population(
+    domain: &Domain,
+    seed: u64,
+    count: usize,
+) -> Result<Vec<Vec<f64>>, Box<dyn std::error::Error>> {
+    let points = Start::new(domain, seed).population(count)?;
+    let (lower, upper) = (domain.search_lower(), domain.search_upper());
+    let unit = |row: &[f64]| {
+        (row.iter().zip(lower).zip(upper)).map(|((x, lo), hi)| (x - lo) / (hi - lo)).collect()
+    };
+    Ok(points.batch().rows().map(unit).collect())
 }
 
 /// CMA-ES of the crate `fcmaes-core` from `start` with first steps of `sigma`: one run.

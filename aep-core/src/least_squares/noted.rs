@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use super::LeastSquares;
-use crate::{Batch, Domain, Errors, Problem, Scalar};
+use crate::{Batch, Domain, Problem, Scalar};
 
 /// A problem evaluated by its residuals, which are noted: an evaluator hands on costs only, in pieces and on threads as it
 /// likes.
@@ -52,19 +52,7 @@ impl<T: Scalar> Problem<T> for Noted<'_, T> {
         }
     }
 
-    fn batch_size(&self) -> usize {
-        self.problem.batch_size()
-    }
-
-    fn errors(&self) -> Errors {
-        self.problem.errors()
-    }
-
-    fn is_broken_off(&self) -> bool {
-        self.problem.is_broken_off()
-    }
-
-    fn identity(&self) -> String {
-        self.problem.identity()
+    fn around(&self) -> Option<&dyn Problem<T>> {
+        Some(self.problem)
     }
 }

@@ -13,6 +13,19 @@ pub struct AsFound<'a> {
     pub force: f64,
 }
 
+impl AsFound<'_> {
+    /// Why an effect is none whose parameter at place `k`, of this name, ended within a `factor` of where its search begins.
+    pub fn at_least(
+        &self,
+        (k, name): (usize, &'static str),
+        factor: f64,
+        meaning: &'static str,
+    ) -> Option<Refused> {
+        let (value, limit) = (self.values[k], factor * self.least[k]);
+        (value <= limit).then_some(Refused { name, value, limit, unit_of: name, meaning })
+    }
+}
+
 /// Why a fitted effect no longer is that effect: a value at which it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refused {

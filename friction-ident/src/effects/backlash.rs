@@ -65,20 +65,13 @@ impl Effect for Backlash {
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        closed(found.values[1], found.least[1])
+        closed(found, 1)
     }
 }
 
 /// Why a gap is none that is as narrow as its search allows: it is a coupling then.
-fn closed(gap: f64, least: f64) -> Option<Refused> {
-    let limit = CLOSED * least;
-    (gap <= limit).then_some(Refused {
-        name: "b",
-        value: gap,
-        limit,
-        unit_of: "b",
-        meaning: "the gap is as narrow as it may be",
-    })
+fn closed(found: &AsFound<'_>, width: usize) -> Option<Refused> {
+    found.at_least((width, "b"), CLOSED, "the gap is as narrow as it may be")
 }
 
 /// State: place of the drive in the gap, -1/2..1/2 of its width.

@@ -38,14 +38,7 @@ const SLOW: f64 = 1.001;
 
 /// Why a coupling is none.
 fn not_one(found: &AsFound<'_>) -> Option<Refused> {
-    let (frequency, zeta) = (found.values[1], found.values[2]);
-    let slow = Refused {
-        name: "f",
-        value: frequency,
-        limit: SLOW * found.least[1],
-        unit_of: "f",
-        meaning: "it swings as slowly as it may",
-    };
+    let zeta = found.values[2];
     let silent = Refused {
         name: "zeta",
         value: zeta,
@@ -53,7 +46,8 @@ fn not_one(found: &AsFound<'_>) -> Option<Refused> {
         unit_of: "zeta",
         meaning: "nothing rings",
     };
-    if frequency < slow.limit { Some(slow) } else { (zeta >= SILENT).then_some(silent) }
+    let slow = found.at_least((1, "f"), SLOW, "it swings as slowly as it may");
+    slow.or_else(|| (zeta >= SILENT).then_some(silent))
 }
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];

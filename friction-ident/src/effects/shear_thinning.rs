@@ -49,10 +49,8 @@ impl Effect for ShearThinning {
 
     /// What is thin at any speed is a friction level, smoothed where the axis reverses.
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        let (value, limit) = (found.values[1], AT_ONCE * found.least[1]);
         let meaning = "it thins at the lowest speed of its search: a friction level";
-        let refused = Refused { name: "v_n", value, limit, unit_of: "v_n", meaning };
-        (value < limit).then_some(refused)
+        found.at_least((1, "v_n"), AT_ONCE, meaning)
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {

@@ -227,9 +227,11 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let Some(top) = self.rungs.last() else { return };
-        let no_cause = ahead.is_no_cause(&self.base.model, &top.model);
-        let astray = || astray(family, &top.model).map(|astray| NoCause::Astray { astray });
-        let no_cause = no_cause.or_else(astray);
+        let astray = self.places.iter().find_map(|place| match place {
+            Remains::Astray { astray } => Some(NoCause::Astray { astray: astray.clone() }),
+            _ => None,
+        });
+        let no_cause = ahead.is_no_cause(&self.base.model, &top.model).or(astray);
         // A likelihood gains by another share of noise, too: what a model explains it foretells.
         let falls =
             top.scale < self.base.scale && !self.leaves_most(top, ahead.budget(), thresholds);

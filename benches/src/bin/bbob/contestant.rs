@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use aep_core::random::{Purpose, Streams, uniform};
 use aep_core::{Domain, Ingredient, Lineages, Method, Start, methods};
-use benches::peers::{cmaes_bipop, fcmaes_cma};
+use benches::peers::{cmaes_bipop, fcmaes_cma, population};
 use benches::python::{Asked, INDIVIDUALS, Pool, Request};
 use fcmaes_core::CmaesParams;
 
@@ -100,7 +100,10 @@ fn cmaes_crate(task: &mut Task<'_>, seed: u64) -> Result<()> {
     cmaes_bipop(cube, budget, target, seed, |x| task.evaluate(x))
 }
 
-/// First steps of 0.2 of the width, as ours; from a random place, which later runs change.
+/// First step of all, in widths of the domain.
+const SIGMA: f64 = 0.2;
+
+/// From a random place, which later runs change.
 fn fcmaes_crate(task: &mut Task<'_>, seed: u64) {
     let (lower, upper) = task.limits();
     let first = 4 + (3.0 * (lower.len() as f64).ln()) as i32;
@@ -116,7 +119,7 @@ fn fcmaes_crate(task: &mut Task<'_>, seed: u64) {
             runid: run as i64,
             ..CmaesParams::default()
         };
-        let sigma = 0.2 * (upper[0] - lower[0]);
+        let sigma = SIGMA * (upper[0] - lower[0]);
         let mut search = fcmaes_cma((&lower, &upper), &guess, sigma, &settings);
         while search.stop() == 0 {
             let costs: Vec<f64> = search.ask().iter().map(|x| task.evaluate(x)).collect();
@@ -127,9 +130,6 @@ fn fcmaes_crate(task: &mut Task<'_>, seed: u64) {
         }
     }
 }
-
-/// First step of methods of Python, in widths of the domain: that of the others.
-const SIGMA: f64 = 0.2;
 
 impl Asked for Task<'_> {
     fn cost(&mut self, unit: &[f64]) -> f64 {
@@ -148,20 +148,12 @@ impl Asked for Task<'_> {
 /// From the places where ours begin; one that gives up begins again.
 fn python(peer: &str, pool: &Pool, task: &mut Task<'_>, seed: u64) -> Result<()> {
     let (lower, upper) = task.limits();
-    let domain = Domain::new(lower.clone(), upper.clone())?;
+    let domain = Domain::new(lower, upper)?;
     let whole = task.whole();
     for again in 0.. {
         let before = task.used();
-        let places = Start::new(&domain, seed + 1000 * again);
-        let places = places.population(INDIVIDUALS * lower.len())?;
-        let unit = |x: &[f64]| -> Vec<f64> {
-            x.iter()
-                .zip(lower.iter().zip(&upper))
-                .map(|(x, (lo, hi))| (x - lo) / (hi - lo))
-                .collect()
-        };
-        let population = places.batch().rows().map(unit).collect();
         let (seed, budget) = (seed + 1000 * again, task.budget() - before);
+        let population = population(&domain, seed, INDIVIDUALS * domain.dimension())?;
         let (whole, sigma) = (&whole[..], SIGMA);
         let request = Request { peer, seed, budget, residuals: 0, sigma, whole, population };
         pool.run(&request, task)?;

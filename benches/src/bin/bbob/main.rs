@@ -3,7 +3,7 @@
 //! `cargo run --release -p benches --features bbob --bin bbob -- bbob` writes `bbob/bbob.csv` (every
 //! run), `bbob/bbob.md` (shares of solved runs) and `bbob/ert.md` (expected running time of each function),
 //! and prints the first table. It needs a C compiler and libclang. `--observe` writes what `cocopp`
-//! reads into `exdata/`; `--ablation` runs `aep-lineages` with each of its ingredients left out.
+//! reads into `exdata/`; `--suite noisy` and `--suite mixint` are its functions under noise and with whole numbers; `--ablation` runs `aep-lineages` with each of its ingredients left out.
 //!
 //! Odd instances are told; even ones are what `aep-lineages` was tuned on.
 

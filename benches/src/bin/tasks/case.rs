@@ -3,7 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use aep_core::methods::Facts;
-use aep_core::{Domain, LeastSquares, Problem, Purpose, Start, Streams};
+use aep_core::{Domain, LeastSquares, Problem, Purpose, Streams};
 use aep_problems::TestProblem;
 use aep_problems::tasks::{self, Identification};
 
@@ -95,12 +95,7 @@ impl Case {
 
     /// The initial population of a seed, in the cube of width 1.
     pub fn population(&self, seed: u64, count: usize) -> Result<Vec<Vec<f64>>> {
-        let points = Start::new(self.domain(), seed).population(count)?;
-        let (lower, upper) = (self.domain().search_lower(), self.domain().search_upper());
-        let unit = |row: &[f64]| {
-            (row.iter().zip(lower).zip(upper)).map(|((x, lo), hi)| (x - lo) / (hi - lo)).collect()
-        };
-        Ok(points.batch().rows().map(unit).collect())
+        benches::peers::population(self.domain(), seed, count)
     }
 
     pub fn tally(&self, budget: u64) -> Tally<'_> {

@@ -91,7 +91,7 @@ impl Effect for TwoMass {
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         let (load, gap, stiffness) = (found.values[0], found.values[3], found.values[4]);
-        closed(gap, found.least[3]).or_else(|| {
+        closed(found, 3).or_else(|| {
             // Either side of the middle has half of the gap.
             let gives = found.force * load / (load + found.mass) / stiffness;
             (gives > 0.5 * gap).then_some(Refused {

@@ -44,11 +44,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let (children, screened) = self.expand(&climb.base, from, size, lag);
             // The base model in another valley is another start and no model to be better than.
             let from = if size == 1 { &climb.base } else { from };
-            let by_chance = if place == 0 { Some(&screened) } else { None };
-            let by_chance = by_chance.or(climb.screened.first().map(|(_, s)| s));
-            if let Some(screened) = by_chance.filter(|_| place == 0 || size == 1) {
+            // Chance is asked beside the best set, and once beside the base.
+            let beside = match (place, size) {
+                (0, _) => Some(&screened),
+                (_, 1) => climb.screened.first().map(|(_, beside)| beside),
+                _ => None,
+            };
+            if let Some(beside) = beside {
                 let gains = children.iter().map(|child| self.comparison.compare(from, child));
-                let each = gains.map(|gain| self.p_value(screened, gain));
+                let each = gains.map(|gain| self.p_value(beside, gain));
                 least = least.into_iter().chain(each).reduce(f64::min);
             }
             if place == 0 {
