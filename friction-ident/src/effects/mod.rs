@@ -194,6 +194,11 @@ pub trait Effect: Sync + Send {
         false
     }
 
+    /// Whether it is a friction level that fades as speed grows: level and viscosity are what friction is beyond it.
+    fn fades_with_speed(&self) -> bool {
+        false
+    }
+
     /// Whether it is a friction level that runs with time: a shape of one that varies freely, which does not speak
     /// against it.
     fn is_course_of_time(&self) -> bool {

@@ -79,6 +79,10 @@ impl Effect for Stribeck {
         }
     }
 
+    fn fades_with_speed(&self) -> bool {
+        true
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("stribeck:free")
     }

@@ -8,6 +8,9 @@
 //! F(theta)_k = F_C+ + F_v+ v_k  where v_k > 0,   -F_C- + F_v- v_k  where v_k < 0     by least squares: q = P F(theta)
 //! ```
 //!
+//! What fades with speed is left out: a line through a hump would tell a negative viscosity. Nothing is told where
+//! friction is no line without it.
+//!
 //! Its intervals follow from the covariance of all parameters together, `var q = P J S J' P'` with `J = dF/dtheta`:
 //! never from a sum of their intervals.
 
@@ -28,6 +31,8 @@ const ELSEWHERE: [Slot; 4] = [Slot::Drive, Slot::Sensor, Slot::Attached, Slot::C
 /// Fewest samples of a direction, and the least spread of its speeds about their mean, for a line.
 const FEWEST: usize = 100;
 const SPREAD: f64 = 0.1;
+/// A line misses less than this share of the level, rms, or is none.
+const STRAIGHT: f64 = 0.1;
 /// Step of differences, of logarithms and of values.
 const STEP: f64 = 1e-4;
 /// An interval up to this share of the friction determines a quantity.
@@ -38,14 +43,16 @@ impl FrictionFamily {
     /// friction of its own.
     pub fn friction(&self, fitted: &Fitted, decides: Decides) -> Combinations {
         let Some(lines) = Lines::of(self) else { return Combinations::default() };
-        let value = |fitted: &Fitted| {
+        let friction = |fitted: &Fitted| {
             let model = self.sliding_part(&self.model(fitted).ok()?)?;
             let force = self.driven(|motion| force_along(&model, motion));
             let p = &self.prepared;
             let alone = force.iter().zip(&p.acceleration).map(|(f, a)| f - model.mass() * a);
-            lines.through(&alone.collect::<Vec<f64>>())
+            Some(alone.collect::<Vec<f64>>())
         };
-        let Some(here) = value(fitted) else { return Combinations::default() };
+        let value = |fitted: &Fitted| lines.through(&friction(fitted)?);
+        let here = friction(fitted).and_then(|force| lines.straight(&force));
+        let Some(here) = here else { return Combinations::default() };
         let (found, weights) = match (decides, self.ahead()) {
             (Decides::Prediction, Some(ahead)) => {
                 let found = prediction_fit(self, &*ahead, fitted);
@@ -111,7 +118,10 @@ impl FrictionFamily {
             .iter()
             .filter(|term| {
                 let about = term.effect().about();
-                ELSEWHERE.iter().any(|slot| about.acts_on(*slot)) || term.effect().is_of_place()
+                let effect = term.effect();
+                ELSEWHERE.iter().any(|slot| about.acts_on(*slot))
+                    || effect.is_of_place()
+                    || effect.fades_with_speed()
             })
             .map(crate::model::ModelEffect::name)
             .collect();
@@ -172,6 +182,19 @@ impl Lines {
         directions.iter().all(shows).then_some(Self { directions })
     }
 
+    /// Lines through a friction force, if it is one of lines.
+    fn straight(&self, force: &[f64]) -> Option<[f64; 6]> {
+        let lines = self.through(force)?;
+        let mut squares = 0.0;
+        for (way, samples) in self.directions.iter().enumerate() {
+            let (sign, level, slope) = ([1.0, -1.0][way], lines[way], lines[3 + way]);
+            let missed = samples.iter().map(|(k, v)| sign * force[*k] - level - slope * v);
+            squares += missed.map(|missed| missed.powi(2)).sum::<f64>();
+        }
+        let count = self.directions.iter().map(Vec::len).sum::<usize>() as f64;
+        ((squares / count).sqrt() <= STRAIGHT * lines[2].abs()).then_some(lines)
+    }
+
     /// Level and slope of a friction force over speed in either direction, and their means.
     fn through(&self, force: &[f64]) -> Option<[f64; 6]> {
         let line = |samples: &[(usize, f64)], sign: f64| {
@@ -226,5 +249,25 @@ mod tests {
         let damping = truth.get("viscous.F_v").unwrap();
         let found = of("F_v mean");
         assert!((found.value / damping - 1.0).abs() < 0.05, "{found:?} {damping}");
+    }
+
+    #[test]
+    fn a_hump_does_not_turn_the_viscosity_and_what_is_no_line_is_not_told_as_one() {
+        let made = generate(&Hide::Nothing, 1, Level::Clear).unwrap();
+        let family = FrictionFamily::new(&made.recording, &Options::default()).unwrap();
+        let fastest = family.top_speed;
+        let told = |effect: &str, values: &[f64]| {
+            let names = ["coulomb", "viscous", effect].map(str::to_owned);
+            let values = [&[2.0, 20.0, 1.0 / fastest], values].concat();
+            let model = Fitted { terms: terms(&family, &names).unwrap(), values };
+            family.friction(&model, Decides::FittedForce).quantities
+        };
+        let humped = told("stribeck:gaussian", &[20.0, fastest]);
+        for (found, value) in humped.iter().zip([20.0, 20.0, 20.0, 1.0 / fastest]) {
+            assert!((found.estimate.value - value).abs() < 0.02 * value, "{found:?} {value}");
+        }
+        let square = |share: f64| [share * 20.0 / fastest.powi(2)];
+        assert_eq!(told("quadratic-drag", &square(0.1)).len(), 6);
+        assert!(told("quadratic-drag", &square(10.0)).is_empty());
     }
 }

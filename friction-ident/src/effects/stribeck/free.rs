@@ -148,6 +148,10 @@ impl Effect for Free {
         true
     }
 
+    fn fades_with_speed(&self) -> bool {
+        true
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw {
             level: "{

@@ -69,9 +69,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                     let because = Some(Reason::Refused { refusal: refusal.clone() });
                     self.note(size, &child, from, gain, Outcome::NotIdentifiable, because);
                     if gain.nats > self.thresholds.better {
-                        if size == 1 {
-                            let (effects, refusal) = (self.names(&child), refusal.clone());
-                            self.remarks.push(Remark::NotNamed { effects, refusal });
+                        // Told once, beside whichever base model.
+                        let mut effects = child.effects(self.family);
+                        effects.retain(|term| !climb.base.model.terms.contains(term));
+                        let (effects, refusal) = (self.named(&effects), refusal.clone());
+                        let told = Remark::NotNamed { effects, refusal: refusal.clone() };
+                        if size == 1 && !self.remarks.contains(&told) {
+                            self.remarks.push(told);
                         }
                         climb.refused.push((child, refusal));
                     }

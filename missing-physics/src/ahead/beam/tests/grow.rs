@@ -123,14 +123,17 @@ fn what_is_refused_is_kept_for_comparison_told_and_not_gone_on_from() {
     let mut plant = Plant::new(1, &[(WAVE, &[0.05])]);
     plant.none = Some(WAVE);
     let mut search = search(&plant, narrow());
-    let climb = search.begin(node(&plant, &[]), Vec::new());
+    let base = || node(&plant, &[(BEAT, &[1e-3])]);
+    let climb = search.begin(base(), Vec::new());
     let (refused, _) = &climb.refused[0];
-    assert_eq!(refused.effects(&plant), [WAVE]);
+    assert_eq!(refused.effects(&plant), [BEAT, WAVE]);
     assert!(climb.nodes.iter().flatten().all(|set| !set.model.terms.contains(&WAVE)));
     let [Remark::NotNamed { effects, .. }] = &search.remarks[..] else {
         panic!("{:?}", search.remarks)
     };
     assert_eq!(effects, &["wave"]);
+    search.begin(base(), Vec::new());
+    assert_eq!(search.remarks.len(), 1, "told once");
 }
 
 #[test]
