@@ -36,18 +36,15 @@ const SILENT: f64 = 0.383;
 /// large that is.
 const SLOW: f64 = 1.001;
 
-/// Why a coupling is none.
+/// Why a coupling is none. A force drives the mass, nothing blocks it: what rings are both bodies against each other, damped
+/// by `zeta sqrt(1 + m_L/m)`.
 fn not_one(found: &AsFound<'_>) -> Option<Refused> {
-    let zeta = found.values[2];
-    let silent = Refused {
-        name: "zeta",
-        value: zeta,
-        limit: SILENT,
-        unit_of: "zeta",
-        meaning: "nothing rings",
-    };
+    let (load, zeta) = (found.values[0], found.values[2]);
+    let limit = SILENT / (1.0 + load / found.mass).sqrt();
+    let silent =
+        Refused { name: "zeta", value: zeta, limit, unit_of: "zeta", meaning: "nothing rings" };
     let slow = found.at_least((1, "f"), SLOW, "it swings as slowly as it may");
-    slow.or_else(|| (zeta >= SILENT).then_some(silent))
+    slow.or_else(|| (zeta >= limit).then_some(silent))
 }
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];

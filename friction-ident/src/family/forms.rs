@@ -387,6 +387,8 @@ mod tests {
             };
             assert_eq!((effect.as_str(), meaning.as_str()), (name, "nothing rings"));
             assert_eq!((value.name.as_str(), value.value, value.unit.as_str()), ("zeta", 0.5, "1"));
+            // Both bodies against each other ring less the lighter the mass in front is.
+            assert!(said(&family, name, &[("zeta", 0.3), ("m_L", 1e3)]).is_some(), "{name}");
             let Some(Refusal::NotThatEffect { value, meaning, .. }) =
                 said(&family, name, &[("f", 1.0), ("zeta", 0.05)])
             else {

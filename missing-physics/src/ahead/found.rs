@@ -233,8 +233,10 @@ impl Found {
         });
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model).or(astray);
         // A likelihood gains by another share of noise, too: what a model explains it foretells.
-        let falls =
-            top.scale < self.base.scale && !self.leaves_most(top, ahead.budget(), thresholds);
+        // Below what the sensors make there are no shares.
+        let beyond = !self.complete && top.scale > ahead.budget();
+        let idle = beyond && leaves_most(&self.base, top, ahead.budget());
+        let falls = top.scale < self.base.scale && !idle;
         if self.complete && falls && no_cause.is_none() {
             return;
         }
@@ -265,11 +267,6 @@ impl Found {
         self.costs.clear();
         self.as_good.clear();
         self.p_values.clear();
-    }
-
-    /// Whether a model that errs more than it may leaves nearly all of what the base lacks.
-    fn leaves_most(&self, top: &Node, budget: f64, thresholds: &Thresholds) -> bool {
-        top.scale > thresholds.complete * budget && leaves_most(&self.base, top, budget)
     }
 
     /// Whether a term, in whatever form, is among `terms`.
@@ -406,6 +403,23 @@ mod tests {
         found.judge(&plant, &plant, &Thresholds::default());
         assert!(found.added.is_empty() && !found.complete);
         assert!(matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]));
+    }
+
+    #[test]
+    fn names_go_where_an_incomplete_model_leaves_nearly_all_that_the_base_errs() {
+        for (last, stays) in [(1.25, true), (1.28, false)] {
+            let (plant, mut found) = found(None);
+            let scaled = |node: &Node, times: f64| {
+                let factor = times * plant.budget() / node.scale;
+                let errors = node.errors.iter().map(|e| factor * e).collect();
+                Node::new(&plant, node.model.clone(), node.setting, errors)
+            };
+            found.base = scaled(&found.base, 1.29);
+            found.rungs = vec![scaled(&found.rungs[0], last)];
+            found.complete = false;
+            found.judge(&plant, &plant, &Thresholds::default());
+            assert_eq!(!found.added.is_empty(), stays, "{last}: {:?}", found.remarks);
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
 use crate::ahead::screen::{Promise, Screened, screen};
 use crate::family::{Fitted, ModelFamily};
-use crate::report::{Outcome, Reason, Remark};
+use crate::report::{Outcome, Reason, Refusal, Remark};
 use crate::task::Event;
 
 /// Only models whose errors are within this factor of the best of their size are looked at so closely.
@@ -69,13 +69,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                     let because = Some(Reason::Refused { refusal: refusal.clone() });
                     self.note(size, &child, from, gain, Outcome::NotIdentifiable, because);
                     if gain.nats > self.thresholds.better {
-                        // Told once, beside whichever base model.
-                        let mut effects = child.effects(self.family);
-                        effects.retain(|term| !climb.base.model.terms.contains(term));
-                        let (effects, refusal) = (self.named(&effects), refusal.clone());
-                        let told = Remark::NotNamed { effects, refusal: refusal.clone() };
-                        if size == 1 && !self.remarks.contains(&told) {
-                            self.remarks.push(told);
+                        if size == 1 {
+                            self.tell_refused(&climb.base, &child, &refusal);
                         }
                         climb.refused.push((child, refusal));
                     }
@@ -118,6 +113,17 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
         climb.beam = ranked.iter().take(width).cloned().collect();
         climb.nodes.push(ranked);
+    }
+
+    /// Tells that an effect is none: once, beside whichever base model.
+    fn tell_refused(&mut self, base: &Node, child: &Node, refusal: &Refusal) {
+        let mut added = child.effects(self.family);
+        added.retain(|term| !base.model.terms.contains(term));
+        let effects = self.named(&added);
+        let is_it = |told: &Remark| matches!(told, Remark::NotNamed { effects: told, .. } if *told == effects);
+        if !self.remarks.iter().any(is_it) {
+            self.remarks.push(Remark::NotNamed { effects, refusal: refusal.clone() });
+        }
     }
 
     /// A set with one effect more: the most promising ones, fitted, each in the form that is best. A set that is not the
