@@ -169,7 +169,7 @@ IN_MODELICA = (
     {"viscous-stroke": {**{f"c_{k}": 3.0 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
     {"position-friction": {**{f"c_{k}": 1.0 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory": {"tau_L": 0.01}},
-    {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory:lag": {"tau_L": 0.01}},
+    {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory:lag": {"tau_L": 0.01}, "presliding:static": {"k_t": 2e5}},
     {"rising-static-friction": {"dF": 2.0, "gamma": 0.1, "v_s": 1e-2}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "rising-static-friction:bond": {"gamma": 0.1}},
     {"reversal-decay": {"F_r": 1.2, "l": 1e-2}},
@@ -194,17 +194,17 @@ def modelica(data):
 
     Modelica is integrated to a tolerance, `aep simulate` by steps no longer than the samples: these are 50 us apart.
     """
-    time, force = data["time_s"][:3000], data["force_N"][:3000]
-    measured = data["position_m"][:3000]
-    rows = np.column_stack([time, force, measured])
+    time, force, measured = data["time_s"][:3000], data["force_N"][:3000], data["position_m"][:3000]
+    between = time[0] + 5e-5 * np.arange(20 * (len(time) - 1) + 1)
+    rows = np.column_stack([between, np.interp(between, time, force), np.interp(between, time, measured)])
     np.savetxt(FOLDER / "piece.csv", rows, delimiter=",", header="time_s,force_N,position_m", comments="", fmt="%.17g")
     for name in ("plain", "full"):
         aep("simulate", "--model", f"{name}.json", "--input", "piece.csv", "--hold", "sampled", "-o", "motion.csv", "--quiet")
-        motion = columns("motion.csv")
+        motion = columns("motion.csv")[::20]
         aep("export", "--model", f"{name}.json", "--to", "modelica", f"{name}.mo", "--quiet")
         start = (motion["position_m"][0], motion["velocity_m_s"][0])
         check(f"Modelica, {name} model, 3 s", motion["position_m"], measured,
-              follow_modelica(FOLDER / f"{name}.mo", time, "recorded(time)", start, recorded(time, force)), 1e-3)
+              follow_modelica(FOLDER / f"{name}.mo", time, "recorded(time)", start, recorded(time, force)), 5e-3)
     fine = np.arange(0.0, 2.0, 5e-5)
     source = "14*sin(5*time) + 6*sin(31*time) + 1.5"
     swing = 14 * np.sin(5 * fine) + 6 * np.sin(31 * fine) + 1.5
