@@ -52,7 +52,7 @@ impl<'a> Drive<'a> {
     fn new(model: &'a Model) -> Self {
         let (mut parts, mut expressed, mut left_out) =
             (Vec::new(), vec!["mass".to_owned()], Vec::new());
-        let contact = model.terms().iter().filter_map(|term| Part::of(term).ok()?.contact).next();
+        let contact = model.terms().iter().find_map(|term| Part::of(term).ok()?.contact);
         for term in model.terms() {
             match Part::of(term).and_then(|part| part.beside(contact)) {
                 Ok(part) => {
@@ -257,9 +257,11 @@ impl<'a> Drive<'a> {
         equations.extend(self.outputs());
         let mut body = indented(&declared);
         if !initial.is_empty() {
-            body += &format!("initial equation\n{}", indented(&initial));
+            body += "initial equation\n";
+            body += &indented(&initial);
         }
-        body += &format!("equation\n{}", indented(&equations));
+        body += "equation\n";
+        body += &indented(&equations);
         // The constant of a circle only where it turns up.
         let circle = format!("  constant Real pi = {:?};\n", std::f64::consts::PI);
         let pi = if body.contains("pi*") { circle.as_str() } else { "" };
@@ -274,7 +276,7 @@ impl<'a> Drive<'a> {
             format!("As in the model: {}.", self.expressed.join(", ")),
         ];
         lines.extend(super::listed(&self.left_out, "Modelica"));
-        lines.iter().map(|line| format!("// {line}\n")).collect()
+        format!("// {}\n", lines.join("\n// "))
     }
 
     /// Connectors that those of Modelica.Blocks fit, and the parameters.

@@ -288,7 +288,7 @@ impl Friction {
                 "breaks = elastic > hold or elastic < -hold or pre(breaks) and (elastic > level or elastic < -level);"
                     .to_owned(),
             );
-            cap = "(if breaks then level else hold)".to_owned();
+            "(if breaks then level else hold)".clone_into(&mut cap);
         }
         let count = springs.len();
         if count > 1 {

@@ -1,5 +1,7 @@
 //! What one effect adds to a model in Modelica.
 
+use std::fmt::Write as _;
+
 use super::text::{filled, identifier, parameter};
 use crate::effects::Slot;
 use crate::model::ModelEffect;
@@ -86,7 +88,9 @@ impl Part {
             *text = names(text);
         }
         for lines in [&mut part.declared, &mut part.initial, &mut part.equations] {
-            lines.iter_mut().for_each(|line| *line = names(line));
+            for line in lines.iter_mut() {
+                *line = names(line);
+            }
         }
         Ok(part)
     }
@@ -272,7 +276,8 @@ fn free_hump(term: &ModelEffect) -> Part {
         } else {
             format!("(-{last})")
         };
-        sum += &format!(" + {rise}*max(0, min(1, (@z - {from:?})/{way:?}))");
+        // Writing to a string cannot fail.
+        let _ = write!(sum, " + {rise}*max(0, min(1, (@z - {from:?})/{way:?}))");
     }
     // Modelica has no asinh.
     let z = "log(abs(@w)/(0.002*{v_high}) + sqrt((@w/(0.002*{v_high}))^2 + 1))";
