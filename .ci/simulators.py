@@ -1,12 +1,13 @@
-"""Exported models in the simulators that read them: FMPy (FMU) and MuJoCo (MJCF, URDF).
+"""Exported models in the simulators that read them: FMPy (FMU), MuJoCo (MJCF, URDF) and Rumoca (Modelica).
 
     python .ci/simulators.py PATH/TO/aep FOLDER
 
-Needs numpy, fmpy and mujoco; .ci/simulators brings them. A recording is simulated, models are identified from it, and each
+Needs numpy, fmpy, mujoco and, for Modelica, rumoca; .ci/simulators brings them. A recording is simulated, models are identified from it, and each
 export runs under its force. Prints how far each motion is from that of `aep simulate` and from the measured one, and
 exits with 1 where an export does not follow.
 """
 
+import importlib.util
 import json
 import subprocess
 import sys
@@ -109,6 +110,127 @@ def follow_mjcf(path, time, force, start):
     return np.array(out)
 
 
+def follow_modelica(path, time, source, start=(0.0, 0.0), before="", unit="force"):
+    """Compiles a model and integrates it; `source` is its force in Modelica, `before` what that needs.
+
+    The solver looks for events at the ends of its steps: a swing keeps them short where everything rests.
+    """
+    import rumoca
+
+    position, speed = ("angle", "angular_velocity") if unit == "torque" else ("position", "velocity")
+    bench = f"""{before}
+model Bench
+  {path.stem} drive({position}_start={float(start[0])!r}, {speed}_start={float(start[1])!r});
+  Real swing(start=0, fixed=true);
+equation
+  der(swing) = cos(300*time);
+  drive.{unit} = {source};
+end Bench;
+"""
+    model = rumoca.Session().loads(path.read_text() + bench, model="Bench")
+    settings = rumoca.SimConfig(solver="bdf", rtol=1e-8, atol=1e-11, max_wall_seconds=300)
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    result = model.simulate(t=(time[0], time[-1]), dt=step, config=settings)
+    return np.interp(time, np.array(result.time), np.array(result[f"drive.{position}"]))
+
+
+def recorded(time, force):
+    """Samples as a function in Modelica, linear between them: Rumoca takes no input over time (0.10.2)."""
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    samples = ",".join(repr(float(f)) for f in force)
+    return f"""
+function recorded
+  input Real t;
+  output Real u;
+protected
+  constant Real samples[{len(force)}] = {{{samples}}};
+  Integer k;
+  Real s;
+algorithm
+  s := min(max((t - {float(time[0])!r})/{step!r}, 0), {len(force) - 1.000001});
+  k := integer(floor(s));
+  u := samples[k + 1] + (samples[k + 2] - samples[k + 1])*(s - k);
+end recorded;
+"""
+
+
+# Beside Coulomb 5 N, viscous 12 N s/m and 0.7 N on 2 kg, in Modelica: what is added.
+IN_MODELICA = (
+    {"coulomb": {"F_C": 8.0}},
+    {"stribeck": {"dF": 2.0, "v_s": 4e-3}},
+    {"stribeck:gaussian": {"dF": 4.0, "v_s": 2e-3}},
+    {"stribeck:exponential": {"dF": 4.0, "v_s": 2e-3, "delta": 1.0}},
+    {"asymmetry": {"dF_C": 1.0, "dF_v": 30.0}, "spring": {"k": 100.0, "x_0": 0.1}},
+    {"quadratic-drag": {"c": 20.0}, "shear-thinning": {"dF": 4.0, "v_n": 0.01}},
+    {"drift": {"dF_C": 1.0, "dF_v": 30.0, "tau": 1.0}, "load-friction": {"mu": 0.05}},
+    {"load-friction:both": {"mu": 0.05, "c": 0.5}},
+    {"ripple": {"a_1": 1.0, "b_1": 0.3, "a_2": 0.3, "b_2": 0.3, "l": 0.02}},
+    {"ripple:direction": {"a_p": 1.0, "b_p": 0.3, "a_m": 0.5, "b_m": 0.3, "l": 0.02}},
+    {"viscous-stroke": {**{f"c_{k}": 3.0 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
+    {"position-friction": {**{f"c_{k}": 1.0 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
+    {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory": {"tau_L": 0.01}},
+    {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory:lag": {"tau_L": 0.01}, "presliding:static": {"k_t": 2e5}},
+    {"rising-static-friction": {"dF": 2.0, "gamma": 0.1, "v_s": 1e-2}},
+    {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "rising-static-friction:bond": {"gamma": 0.1}},
+    {"reversal-decay": {"F_r": 1.2, "l": 1e-2}},
+    {"backlash": {"F_L": 1.5, "b": 1e-3}},
+    {"motor-gain": {"g": 0.9}, "saturation": {"u_max": 12.0}, "actuator-lag": {"tau": 4e-3}},
+    {"actuator-lag:second-order": {"tau": 4e-3, "zeta": 0.4}, "encoder": {"a": 1e-4, "b": 1e-4, "p": 5e-3}},
+    {"input-delay": {"T_d": 3.4e-3}},
+    {"flexible-coupling": {"m_L": 0.8, "f": 15.0, "zeta": 0.05}},
+    {"flexible-coupling:friction": {"m_L": 0.8, "f": 15.0, "zeta": 0.05, "F_L": 1.5, "d_L": 2.0}},
+    {"flexible-coupling:load": {"m_L": 0.8, "f": 15.0, "zeta": 0.05, "F_L": 1.5, "d_L": 2.0}},
+    {"backlash:two-mass": {"m_L": 0.8, "F_L": 1.5, "d_L": 2.0, "b": 4e-4, "k": 1e5, "zeta": 0.1}},
+    {"presliding": {"k_t": 2e5}, "stribeck": {"dF": 2.0, "v_s": 4e-3}},
+    {"presliding:static": {"k_t": 2e5}, "stribeck": {"dF": 2.0, "v_s": 4e-3}},
+    {"presliding:dahl": {"k_t": 2e5}},
+    {"presliding:lugre": {"k_t": 2e5, "sigma_1": 1e3}, "stribeck": {"dF": 2.0, "v_s": 4e-3}},
+    {"presliding:maxwell-slip": {"k_t": 2e5, "spread": 2.5}},
+)
+
+
+def modelica(data):
+    """The recording, every effect under a force in closed form, a rotary axis.
+
+    Modelica is integrated to a tolerance, `aep simulate` by steps no longer than the samples: these are 50 us apart.
+    """
+    time, force, measured = data["time_s"][:3000], data["force_N"][:3000], data["position_m"][:3000]
+    between = time[0] + 5e-5 * np.arange(20 * (len(time) - 1) + 1)
+    rows = np.column_stack([between, np.interp(between, time, force), np.interp(between, time, measured)])
+    np.savetxt(FOLDER / "piece.csv", rows, delimiter=",", header="time_s,force_N,position_m", comments="", fmt="%.17g")
+    for name in ("plain", "full"):
+        aep("simulate", "--model", f"{name}.json", "--input", "piece.csv", "--hold", "sampled", "-o", "motion.csv", "--quiet")
+        motion = columns("motion.csv")[::20]
+        aep("export", "--model", f"{name}.json", "--to", "modelica", f"{name}.mo", "--quiet")
+        start = (motion["position_m"][0], motion["velocity_m_s"][0])
+        check(f"Modelica, {name} model, 3 s", motion["position_m"], measured,
+              follow_modelica(FOLDER / f"{name}.mo", time, "recorded(time)", start, recorded(time, force)), 5e-3)
+    fine = np.arange(0.0, 2.0, 5e-5)
+    source = "14*sin(5*time) + 6*sin(31*time) + 1.5"
+    swing = 14 * np.sin(5 * fine) + 6 * np.sin(31 * fine) + 1.5
+    for k, added in enumerate(IN_MODELICA):
+        # After a stop `aep simulate` keeps the acceleration until the axis moves: friction by it is compared without a rest.
+        rests = "load-friction:both" not in added
+        push = 0.0 if rests else 40.0
+        rows = np.column_stack([fine, swing + push, 0 * fine])
+        np.savetxt(FOLDER / "fine.csv", rows, delimiter=",", header="time_s,force_N,position_m", comments="", fmt="%.17g")
+        effects = {"coulomb": {"F_C": 5.0}, "viscous": {"F_v": 12.0}, "offset": {"F_0": 0.7}, **added}
+        listed = [{"effect": effect, "parameters": p} for effect, p in effects.items()]
+        (FOLDER / f"M{k}.json").write_text(json.dumps({"axis": "linear", "mass": 2.0, "effects": listed}))
+        aep("simulate", "--model", f"M{k}.json", "--input", "fine.csv", "--hold", "sampled", "-o", "motion.csv", "--quiet")
+        exact = columns("motion.csv")["position_m"][::20]
+        aep("export", "--model", f"M{k}.json", "--to", "modelica", f"M{k}.mo", "--quiet")
+        check("Modelica, " + ", ".join(added), exact, exact,
+              follow_modelica(FOLDER / f"M{k}.mo", fine[::20], f"{source} + {push}"), 5e-4)
+    torque = np.column_stack([fine, 0.1 * swing, 0 * fine])
+    np.savetxt(FOLDER / "torque.csv", torque, delimiter=",", header="time_s,torque_Nm,angle_rad", comments="", fmt="%.17g")
+    aep("simulate", "--model", "pendulum.json", "--input", "torque.csv", "--hold", "sampled", "-o", "motion.csv", "--quiet")
+    exact = columns("motion.csv")["angle_rad"][::20]
+    aep("export", "--model", "pendulum.json", "--to", "modelica", "pendulum.mo", "--quiet")
+    check("Modelica, pendulum", exact, exact,
+          follow_modelica(FOLDER / "pendulum.mo", fine[::20], f"0.1*({source})", unit="torque"), 5e-4)
+
+
 def main():
     def model(name, axis, mass, **effects):
         listed = [{"effect": effect.replace("__", ":").replace("_", "-"), "parameters": p} for effect, p in effects.items()]
@@ -159,7 +281,13 @@ def main():
         aep("export", "--model", f"{name}.json", "--to", "mjcf", f"{name}.xml", "--max-step", 1e-4, "--quiet")
         check(f"MuJoCo, {name}, steps of 0.1 ms", exact, exact, follow_mjcf(FOLDER / f"{name}.xml", time, scale * swing, (0.0, 0.0)), 5e-3)
 
-    # 3. URDF: MuJoCo reads it, too.
+    # 3. Modelica, where there is a compiler.
+    if importlib.util.find_spec("rumoca"):
+        modelica(data)
+    else:
+        print("SKIPPED: there is no rumoca; exported Modelica models were not compiled")
+
+    # 4. URDF: MuJoCo reads it, too.
     import mujoco
 
     for name in ("plain", "pendulum"):

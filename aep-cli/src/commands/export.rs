@@ -18,11 +18,11 @@ use crate::failure::Failure;
 use crate::output::{self, written};
 use crate::{outputs, steps};
 
-/// Export a model: to a simulator (FMU, MJCF, URDF), its friction compensator as C, or as JSON with a schema
+/// Export a model: to a simulator (FMU, MJCF, URDF, Modelica), its friction compensator as C, or as JSON with a schema
 ///
 /// FMU: co-simulation after FMI 2.0, every effect simulated as here, with its C source and, where there is a C
-/// compiler, a binary for this machine. MJCF and URDF express less; what is left out is listed on the terminal and in the
-/// file.
+/// compiler, a binary for this machine. Modelica: one model without a library, its friction by events. MJCF and URDF express
+/// less; what is left out is listed on the terminal and in the file.
 ///
 /// C: header, source, test vectors and a program that runs them. C99, no allocation, nothing but math.h;
 /// sampling time and stick limit are built in. The vectors are recorded from a simulated loop along
@@ -42,7 +42,7 @@ pub struct Args {
     /// The same as PATH
     #[arg(short, long, value_name = "PATH", conflicts_with = "path")]
     output: Option<PathBuf>,
-    /// Name of the C functions and files, of the FMU, of the joint [default: compensator, or the name of the file]
+    /// Name of the C functions and files, of the FMU, of the joint, of the Modelica model [default: compensator, or the name of the file]
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
     /// FMU: longest step of the integration, s (a parameter of it); MJCF: time step
@@ -68,6 +68,8 @@ enum Form {
     Mjcf,
     /// The model as a robot description, as far as that can say it
     Urdf,
+    /// The model in Modelica, without a library
+    Modelica,
     /// The model as JSON that names its schema
     Json,
     /// The JSON schema of models
@@ -81,6 +83,7 @@ Examples:
   aep export --model model.json --to c --sample-time 0.001 --name x_axis -o drive
   aep export --model model.json --to fmu drive.fmu
   aep export --model model.json --to mjcf drive.xml
+  aep export --model model.json --to modelica Drive.mo
   aep export --model model.json --to json -o exported.json
   aep export --to schema -o model.schema.json";
 
@@ -102,6 +105,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         Form::Fmu => fmu::write(&plant(args)?, args, path)?,
         Form::Mjcf => simulators::mjcf(&plant(args)?, args, path)?,
         Form::Urdf => simulators::urdf(&plant(args)?, args, path)?,
+        Form::Modelica => simulators::modelica(&plant(args)?, args, path)?,
         Form::Json => json(&model(args)?, path)?,
         Form::Schema => {
             output::save_json(path, &schema(&Library::builtin()))?;

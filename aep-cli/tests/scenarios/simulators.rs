@@ -1,4 +1,4 @@
-//! Models for other simulators: what the files hold. `.ci/simulators` runs them in `FMPy` and `MuJoCo`.
+//! Models for other simulators: what the files hold. `.ci/simulators` runs them in `FMPy`, `MuJoCo` and `Rumoca`.
 
 use std::io::Read as _;
 
@@ -64,6 +64,24 @@ fn what_a_simulator_cannot_express_is_told_on_the_terminal_and_in_the_file() {
         assert!(text.contains("Left out: stribeck: "), "{text}");
         assert!(text.contains("joint name=\"drive\""), "{text}");
     }
+}
+
+#[test]
+fn a_modelica_model_says_all_of_the_model_and_a_free_curve_is_left_out() {
+    let desk = Desk::new();
+    desk.write("model.json", MODEL);
+    let run = desk.aep("export --model model.json --to modelica Drive.mo");
+    assert!(run.done().contains("expressed: mass, coulomb, viscous, stribeck\n"), "{}", run.out);
+    assert!(!run.out.contains("left out"), "{}", run.out);
+    let text = desk.read("Drive.mo");
+    assert!(text.contains("model Drive ") && text.contains("end Drive;"), "{text}");
+    assert!(text.contains("stribeck_v_s(unit=\"m/s\") = 0.002"), "{text}");
+    let free = MODEL.replace("]}", ",{\"effect\":\"presliding:free\",\"parameters\":{\"d\":5e-6,\"w_0\":0.3,\"w_1\":0.3,\"w_2\":0.3,\"w_4\":0.3,\"sigma_1\":1000.0}}]}");
+    desk.write("free.json", free);
+    let run = desk.aep("export --model free.json --to modelica Drive.mo");
+    assert!(run.done().contains("left out: presliding:free: "), "{}", run.out);
+    assert!(desk.read("Drive.mo").contains("// Left out: presliding:free: "));
+    desk.aep("export --model model.json --to modelica model.mo").refused(&["'model'", "--name"]);
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 mod free;
 
+pub(crate) use free::KNOT_SPEEDS;
+
 use super::{About, Apart, Before, Begin, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
@@ -94,7 +96,7 @@ impl Effect for Stribeck {
         let (speed, exponent) = (value("v_s").unwrap_or(1e-3), value("delta").unwrap_or(1.0));
         let law = |v: f64| height * self.0.of_ratio(v / speed, exponent);
         let end = law(before.top_speed);
-        let knots = free::KNOT_SPEEDS.iter().enumerate();
+        let knots = KNOT_SPEEDS.iter().enumerate();
         let values =
             knots.map(|(k, share)| (format!("c_{k}"), law(share * before.top_speed) - end));
         Begin { values: values.collect(), level: end }

@@ -19,6 +19,7 @@ pub(crate) mod constants;
 mod dynamics;
 mod fmu;
 mod mjcf;
+mod modelica;
 mod pendulum;
 mod plant;
 mod urdf;
@@ -29,6 +30,7 @@ use crate::model::Model;
 
 pub use fmu::to_fmu;
 pub use mjcf::to_mjcf;
+pub use modelica::to_modelica;
 pub use urdf::to_urdf;
 
 /// A file of an export.
@@ -86,6 +88,9 @@ pub enum ExportError {
     /// A name that the format does not take.
     #[error("'{0}' is no name in C and XML\nuse letters, digits and underscores, a letter first")]
     Name(String),
+    /// A word of the format.
+    #[error("'{0}' is a word of Modelica and names no model\ngive it another name: --name NAME")]
+    Keyword(String),
     /// A time step that is none.
     #[error("the step is {0} s\nit must be above 0")]
     Step(String),

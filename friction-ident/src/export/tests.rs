@@ -244,10 +244,14 @@ fn guid(exported: &Exported) -> String {
 }
 
 #[test]
-fn what_mujoco_and_urdf_cannot_say_is_listed_in_the_file_and_beside_it() {
+fn what_a_target_cannot_say_is_listed_in_the_file_and_beside_it() {
     for effect in all() {
         let model = with(effect).unwrap();
-        for exported in [to_mjcf(&model, "axis", 1e-3).unwrap(), to_urdf(&model, "axis").unwrap()] {
+        for exported in [
+            to_mjcf(&model, "axis", 1e-3).unwrap(),
+            to_urdf(&model, "axis").unwrap(),
+            to_modelica(&model, "axis").unwrap(),
+        ] {
             let text = &exported.files[0].text;
             for name in model.effects() {
                 let expressed = exported.expressed.iter().any(|e| e == name);
@@ -290,4 +294,95 @@ fn what_cannot_be_exported_says_how_to_mend_it() {
     assert!(error.contains("'presliding:free' is not written in C"), "{error}");
     assert_eq!(to_fmu(&base(), "x-axis", 1e-3), Err(ExportError::Name("x-axis".to_owned())));
     assert!(matches!(to_mjcf(&base(), "x", 0.0), Err(ExportError::Step(_))));
+}
+
+/// Words of Modelica that its equations use, and functions.
+const MODELICA: [&str; 26] = [
+    "der", "pre", "delay", "reinit", "abs", "sign", "max", "min", "sin", "cos", "exp", "log",
+    "sqrt", "tanh", "if", "then", "elseif", "elsewhen", "else", "when", "end", "and", "or", "not",
+    "time", "pi",
+];
+
+/// The names that `equations` use and `declared` does not know.
+fn unknown<'a>(declared: &str, equations: &'a str) -> Vec<&'a str> {
+    let letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let code = declared.lines().map(|line| line.split_once(" \"").map_or(line, |(code, _)| code));
+    let known: Vec<&str> = code.flat_map(|line| line.split(|c: char| !letter(c))).collect();
+    equations
+        .split(|c: char| !letter(c) && c != '.')
+        .filter(|word| word.starts_with(|c: char| c.is_ascii_alphabetic()))
+        .filter(|word| !MODELICA.contains(word) && !known.contains(word))
+        .collect()
+}
+
+#[test]
+fn a_modelica_model_declares_every_name_and_ends_every_clause() {
+    let mut left = Vec::new();
+    for effect in all() {
+        let exported = to_modelica(&with(effect).unwrap(), "axis").unwrap();
+        left.extend(exported.left_out.iter().map(|left| left.what.clone()));
+        let text = &exported.files[0].text;
+        let (declared, rest) = text.split_once("\nequation\n").unwrap();
+        let equations = rest.split_once("  annotation(Icon").unwrap().0;
+        let names = unknown(declared, equations);
+        assert!(names.is_empty(), "{}: {names:?} not declared\n{text}", effect.about().name);
+        assert_eq!(equations.matches('(').count(), equations.matches(')').count(), "{text}");
+        let begun = equations.lines().filter(|line| line.starts_with("  when ")).count();
+        assert_eq!(begun, equations.matches("end when;").count(), "{text}");
+        assert!(!text.contains('@'), "{text}");
+        // What its equations do not use is no parameter of it.
+        for address in with(effect).unwrap().addresses() {
+            let name = address.replace(['.', ':', '-'], "_");
+            let used = !unknown(&declared.replace(&format!("{name}("), ""), rest).is_empty();
+            let of_left = exported.left_out.iter().any(|left| address.starts_with(&left.what));
+            let initial =
+                declared.split_once("initial equation").is_some_and(|(_, i)| i.contains(&name));
+            assert!(used || of_left || initial, "{name}\n{text}");
+        }
+    }
+    assert_eq!(left, ["presliding:free"]);
+}
+
+#[test]
+fn a_modelica_model_has_the_numbers_and_units_of_the_model_and_sticks_by_events() {
+    let model = base().with("actuator-lag", &[("tau", 2e-3)]).unwrap();
+    let text = &to_modelica(&model, "Drive").unwrap().files[0].text;
+    for needed in [
+        "parameter Real viscous_F_v(unit=\"N.s/m\") = 12.0 \"damping\";",
+        "Input force(unit=\"N\")",
+        "actuator_lag_tau*der(actuator_lag_force) = force - actuator_lag_force;",
+        "level = max(0, coulomb_F_C);",
+        "when pre(direction) == 0 and (applied > level or applied < -level) then",
+        "reinit(v, 0);",
+    ] {
+        assert!(text.contains(needed), "{needed}\n{text}");
+    }
+    let volts = base().with_effort(Effort::Volt);
+    let text = &to_modelica(&volts, "Drive").unwrap().files[0].text;
+    assert!(text.contains("mass(unit=\"V.s2/m\")") && text.contains("Input effort"), "{text}");
+}
+
+#[test]
+fn what_jumps_while_an_elastic_contact_holds_is_left_out_of_modelica() {
+    let mut model = base();
+    for name in ["presliding:lugre", "reversal-decay", "load-friction:inertia"] {
+        model = model.with_effect(crate::effects::find(name).unwrap()).unwrap();
+    }
+    let exported = to_modelica(&model, "Drive").unwrap();
+    let left: Vec<&str> = exported.left_out.iter().map(|left| left.what.as_str()).collect();
+    assert_eq!(left, ["reversal-decay", "load-friction:inertia"]);
+    assert!(!exported.files[0].text.contains("reversal_decay_"));
+    let asymmetric = base()
+        .with_effect(crate::effects::find("presliding").unwrap())
+        .and_then(|model| model.with_effect(crate::effects::find("asymmetry").unwrap()))
+        .unwrap();
+    let exported = to_modelica(&asymmetric, "Drive").unwrap();
+    assert_eq!(exported.left_out[0].what, "asymmetry while the contact holds");
+    assert!(exported.expressed.iter().any(|name| name == "asymmetry"));
+}
+
+#[test]
+fn a_word_of_modelica_names_no_model() {
+    let error = to_modelica(&base(), "model").unwrap_err().to_string();
+    assert!(error.contains("'model'") && error.contains("--name"), "{error}");
 }

@@ -1,10 +1,10 @@
-//! Formats of simulators of rigid bodies, one file each.
+//! Formats of other simulators, one file each.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use friction_ident::Model;
-use friction_ident::export::{ExportError, Exported, to_mjcf, to_urdf};
+use friction_ident::export::{ExportError, Exported, to_mjcf, to_modelica, to_urdf};
 
 use super::Args;
 use crate::failure::Failure;
@@ -25,6 +25,11 @@ pub fn mjcf(model: &Model, args: &Args, path: &Path) -> Result<String, Failure> 
 /// A robot description.
 pub fn urdf(model: &Model, args: &Args, path: &Path) -> Result<String, Failure> {
     write(&to_urdf(model, &name(args, path))?, "URDF", path)
+}
+
+/// A model in Modelica.
+pub fn modelica(model: &Model, args: &Args, path: &Path) -> Result<String, Failure> {
+    write(&to_modelica(model, &name(args, path))?, "Modelica model", path)
 }
 
 /// The name that was given, or that of the file where it can be one.

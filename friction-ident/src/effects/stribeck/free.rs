@@ -22,7 +22,7 @@ const KNOTS: [f64; FREE + 1] = [
     6.907_756_278_980_637,
 ];
 /// Knots with a value of their own, as shares of the top speed.
-pub(super) const KNOT_SPEEDS: [f64; FREE] =
+pub(crate) const KNOT_SPEEDS: [f64; FREE] =
     [0.0, 0.001, 0.003, 0.008, 0.016, 0.03, 0.06, 0.12, 0.3];
 /// One over the distances of neighbouring knots.
 const SLOPES: [f64; FREE] = {
