@@ -65,7 +65,8 @@ fn said(desk: &Desk, name: &str) -> Vec<u8> {
 fn unfinished(folder: &Path) -> Vec<String> {
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
     let names = names.map(|name| name.into_string().unwrap());
-    names.filter(|name| name.starts_with(".aep-") || name.ends_with(".new")).collect()
+    let new = |name: &str| Path::new(name).extension().is_some_and(|ending| ending == "new");
+    names.filter(|name| name.starts_with(".aep-") || new(name)).collect()
 }
 
 #[test]
@@ -225,7 +226,7 @@ fn a_pipe_that_nobody_reads_is_no_failure() {
     for (name, behind) in [("out", "| true"), ("err", "2>&1 | true"), ("none", ">&- 2>&- <&-")] {
         desk.shell("", &line, behind);
         let started = Instant::now();
-        while !desk.path("model.json").exists() && started.elapsed() < Duration::from_secs(60) {
+        while !desk.path("model.json").exists() && started.elapsed() < Duration::from_mins(1) {
             std::thread::sleep(Duration::from_millis(5));
         }
         assert!(desk.read("model.json").contains("viscous"), "{name}");

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use serde_json::Value;
 
@@ -63,7 +64,7 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 fn alike(line: &str, count: usize) {
     let on = |threads: usize| {
         let desk = Desk::new();
-        desk.write("run.csv", RECORDING.with(|text| text.clone()));
+        desk.write("run.csv", RECORDING.as_str());
         let run = desk.aep(&format!("{line} --threads {threads}"));
         (run.done().to_owned(), files(&desk.path(".")))
     };
@@ -81,14 +82,12 @@ fn alike(line: &str, count: usize) {
     }
 }
 
-thread_local! {
-    /// A recording with a hidden effect.
-    static RECORDING: String = {
-        let desk = Desk::new();
-        desk.challenge("stribeck", 1, "c");
-        desk.read("c/recording.csv")
-    };
-}
+/// A recording with a hidden effect.
+static RECORDING: LazyLock<String> = LazyLock::new(|| {
+    let desk = Desk::new();
+    desk.challenge("stribeck", 1, "c");
+    desk.read("c/recording.csv")
+});
 
 #[test]
 fn a_discovery_with_page_and_series() {
