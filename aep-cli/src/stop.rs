@@ -1,6 +1,7 @@
 //! Ctrl-C: the first one asks for an end after the present step, the second one ends at once. So does the first one while
 //! there is nothing to keep.
 
+use std::io::Write as _;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -29,17 +30,22 @@ fn watched(said: Option<&'static str>) -> &'static AtomicBool {
     // A second call fails because the first one has done it already.
     let _ = ctrlc::set_handler(move || {
         if AT_ONCE.load(Ordering::Relaxed) {
-            eprintln!("\ninterrupted");
+            say("interrupted");
             std::process::exit(i32::from(INTERRUPTED));
         }
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));
         }
         if let Some(said) = said {
-            eprintln!("\n{said}");
+            say(said);
         }
     });
     &STOP
+}
+
+/// Where standard error is closed nobody is left to tell; a panic would end the thread that listens.
+fn say(what: &str) {
+    let _ = writeln!(std::io::stderr(), "\n{what}");
 }
 
 /// From now on Ctrl-C ends at once: nothing was found yet.

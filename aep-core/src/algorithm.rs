@@ -116,8 +116,10 @@ impl<'a, T: Scalar> Start<'a, T> {
     /// whatever the algorithm.
     ///
     /// # Errors
-    /// When an initial point is outside the domain or has not one entry per component.
+    /// When an initial point is outside the domain or has not one entry per component, or that many individuals do not
+    /// fit into memory.
     pub fn population(&self, count: usize) -> Result<Points<T>, ConfigError> {
+        ConfigError::require_fits("population", count, self.domain.dimension())?;
         let mut points = Points::zeros(count, self.domain.dimension());
         let streams = crate::Streams::new(self.seed, crate::Purpose::Initial, 0);
         for i in 0..count {

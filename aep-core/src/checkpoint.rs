@@ -5,7 +5,7 @@
 //! renamed into it, so that a run killed at any moment leaves the last whole checkpoint.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -24,7 +24,7 @@ pub enum CheckpointError {
         /// Which file.
         path: PathBuf,
         /// What the system said.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// The file is something else.
     #[error("{path}: not a checkpoint\n  give the file that the run wrote")]
@@ -112,14 +112,31 @@ pub fn decode<S: DeserializeOwned>(bytes: &[u8]) -> Result<S, CheckpointError> {
 /// When `contents` cannot be encoded or the file not be written.
 pub fn write<C: Serialize>(path: &Path, contents: &C) -> Result<(), CheckpointError> {
     let bytes = frame(&encode(contents)?);
+    replace(path, &bytes).map_err(|source| CheckpointError::File { path: path.into(), source })
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // Through a link to the file it names, so that the link stays one.
+    let path = path.canonicalize().unwrap_or_else(|_| path.into());
+    if path.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
+    }
+    // A device has no content to protect, and must not be replaced by a file.
+    if path.exists() && !path.is_file() {
+        return File::options().write(true).open(&path)?.write_all(bytes);
+    }
     let mut beside = path.as_os_str().to_owned();
     beside.push(".new");
     let beside = PathBuf::from(beside);
-    let written = write_synced(&beside, &bytes).and_then(|()| fs::rename(&beside, path));
-    written.map_err(|source| CheckpointError::File { path: path.into(), source })
+    let written = write_synced(&beside, bytes).and_then(|()| fs::rename(&beside, path));
+    if written.is_err() {
+        // What cannot be used must not take room on a full disk.
+        let _ = fs::remove_file(&beside);
+    }
+    written
 }
 
-fn write_synced(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(bytes)?;
     file.sync_all()
@@ -196,6 +213,35 @@ mod tests {
             text.contains("checkpoint: seed 1\n") && text.contains("run:   seed 2\n"),
             "{text}"
         );
+    }
+
+    #[test]
+    fn what_cannot_be_written_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("folder");
+        fs::create_dir(&inner).unwrap();
+        let error = write(&inner, &1u64).unwrap_err().to_string();
+        assert!(error.contains("folder") && error.contains("it is a directory"), "{error}");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert!(write(&folder.path().join("none/run"), &1u64).is_err());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_link_stays_a_link_and_a_device_a_device() {
+        use std::os::unix::fs::{FileTypeExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        write(&at("file"), &1u64).unwrap();
+        symlink(at("file"), at("link")).unwrap();
+        write(&at("link"), &2u64).unwrap();
+        assert!(at("link").symlink_metadata().unwrap().is_symlink());
+        assert_eq!(read::<u64>(&at("file")).unwrap(), 2);
+        // A device that is always full, seen through a link: a rename would replace the link only.
+        symlink("/dev/full", at("full")).unwrap();
+        assert!(write(&at("full"), &1u64).is_err());
+        assert!(at("full").symlink_metadata().unwrap().is_symlink());
+        assert!(fs::metadata("/dev/full").unwrap().file_type().is_char_device());
     }
 
     #[test]

@@ -78,9 +78,9 @@ impl<T: Scalar, P: Problem<T>, G: Fn(&[T]) -> Vec<T> + Sync> Problem<T> for Cons
 
     fn evaluate_batch(&self, points: Batch<'_, T>, costs: &mut [T]) {
         let mut feasible = Vec::new();
-        for (i, x) in points.rows().enumerate() {
+        for (i, (x, cost)) in points.rows().zip(costs.iter_mut()).enumerate() {
             let violation = self.violation(x);
-            costs[i] = self.ceiling + violation;
+            *cost = self.ceiling + violation;
             if violation <= T::zero() {
                 feasible.push(i);
             }

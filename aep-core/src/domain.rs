@@ -31,7 +31,7 @@ pub enum Scale {
 /// # Ok::<(), aep_core::ConfigError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(bound = "")]
+#[serde(bound = "", try_from = "Unchecked<T>")]
 pub struct Domain<T: Scalar = f64> {
     lower: Vec<T>,
     upper: Vec<T>,
@@ -39,6 +39,29 @@ pub struct Domain<T: Scalar = f64> {
     names: Vec<String>,
     search_lower: Vec<T>,
     search_upper: Vec<T>,
+}
+
+/// What a domain is written as: whatever reads it has it checked again.
+#[derive(Deserialize)]
+#[serde(bound = "")]
+struct Unchecked<T: Scalar> {
+    lower: Vec<T>,
+    upper: Vec<T>,
+    scales: Vec<Scale>,
+    names: Vec<String>,
+    #[serde(rename = "search_lower")]
+    _search_lower: Vec<T>,
+    #[serde(rename = "search_upper")]
+    _search_upper: Vec<T>,
+}
+
+impl<T: Scalar> TryFrom<Unchecked<T>> for Domain<T> {
+    type Error = ConfigError;
+
+    fn try_from(read: Unchecked<T>) -> Result<Self, ConfigError> {
+        let domain = Self::new(read.lower, read.upper)?.with_scales(read.scales)?;
+        if read.names.is_empty() { Ok(domain) } else { domain.with_names(read.names) }
+    }
 }
 
 impl<T: Scalar> Domain<T> {
@@ -66,24 +89,29 @@ impl<T: Scalar> Domain<T> {
     /// The cube [`lower`, `upper`]^`dimension`.
     ///
     /// # Errors
-    /// As [`Domain::new`].
+    /// As [`Domain::new`], and when that many limits do not fit into memory.
     pub fn cube(dimension: usize, lower: T, upper: T) -> Result<Self, ConfigError> {
+        ConfigError::require_fits("domain", 1, dimension)?;
         Self::new(vec![lower; dimension], vec![upper; dimension])
     }
 
     /// Sets the scale of every component.
     ///
     /// # Errors
-    /// When the length is wrong or a logarithmic component reaches zero or below.
+    /// When the length is wrong, a logarithmic component reaches zero or below, or its limits have the same logarithm.
     pub fn with_scales(mut self, scales: Vec<Scale>) -> Result<Self, ConfigError> {
         check_length("scales", scales.len(), self.dimension())?;
         for (component, scale) in scales.iter().enumerate() {
-            let lower = self.lower[component];
+            let (lower, upper) = (self.lower[component], self.upper[component]);
             if *scale == Scale::Log && lower <= T::zero() {
                 return Err(ConfigError::LogLimit { component, lower: lower.as_f64() });
             }
-            self.search_lower[component] = encode(*scale, lower);
-            self.search_upper[component] = encode(*scale, self.upper[component]);
+            let (low, high) = (encode(*scale, lower), encode(*scale, upper));
+            if low >= high {
+                let (lower, upper) = (lower.as_f64(), upper.as_f64());
+                return Err(ConfigError::Limits { component, lower, upper });
+            }
+            (self.search_lower[component], self.search_upper[component]) = (low, high);
         }
         self.scales = scales;
         Ok(self)
@@ -161,8 +189,8 @@ impl<T: Scalar> Domain<T> {
     /// Search to problem coordinates. What is inside the search limits stays inside the limits,
     /// in spite of rounding.
     pub fn decode(&self, u: &[T], x: &mut [T]) {
-        for (j, (x, &u)) in x.iter_mut().zip(u).enumerate() {
-            *x = match self.scales[j] {
+        for (j, ((x, &u), scale)) in x.iter_mut().zip(u).zip(&self.scales).enumerate() {
+            *x = match scale {
                 Scale::Linear => u,
                 Scale::Log if self.search_lower[j] <= u && u <= self.search_upper[j] => {
                     u.exp().max(self.lower[j]).min(self.upper[j])

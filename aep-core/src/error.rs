@@ -53,6 +53,20 @@ pub enum ConfigError {
         /// The valid range.
         hint: &'static str,
     },
+    /// More numbers than one block of a run may hold.
+    #[error(
+        "{what}: {rows} x {columns} numbers do not fit\n  at most {most} are held at once, 1 GiB in double precision"
+    )]
+    TooLarge {
+        /// What they are.
+        what: &'static str,
+        /// Number of rows.
+        rows: usize,
+        /// Numbers of a row.
+        columns: usize,
+        /// Most numbers.
+        most: usize,
+    },
     /// An initial point that lies outside the domain or is not finite.
     #[error(
         "initial point {point}: component {component} = {value} is outside the domain\n  \
@@ -68,7 +82,20 @@ pub enum ConfigError {
     },
 }
 
+/// Most numbers that one block of a run may hold. What is far beyond any memory would end the program, not the run.
+const MOST_NUMBERS: usize = 1 << 27;
+
 impl ConfigError {
+    /// Refuses a block of more than [`MOST_NUMBERS`] numbers.
+    pub(crate) fn require_fits(
+        what: &'static str,
+        rows: usize,
+        columns: usize,
+    ) -> Result<(), Self> {
+        let fits = rows.checked_mul(columns).is_some_and(|numbers| numbers <= MOST_NUMBERS);
+        if fits { Ok(()) } else { Err(Self::TooLarge { what, rows, columns, most: MOST_NUMBERS }) }
+    }
+
     /// Refuses `value` unless `valid`; NaN makes every comparison false and is thus refused too.
     pub(crate) fn require(
         valid: bool,
@@ -94,6 +121,16 @@ pub enum TellError {
         /// Number of costs given.
         found: usize,
         /// Number of points asked.
+        expected: usize,
+    },
+    /// Not one row of residuals per cost.
+    #[error(
+        "{found} rows of residuals for {expected} costs\n  tell one row per point, an empty one where there is none"
+    )]
+    Residuals {
+        /// Number of rows given.
+        found: usize,
+        /// Number of costs told.
         expected: usize,
     },
 }

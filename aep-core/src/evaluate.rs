@@ -25,14 +25,14 @@ pub struct Failures {
 impl Failures {
     /// All failures.
     pub fn total(&self) -> u64 {
-        self.non_finite + self.errors + self.panics
+        self.non_finite.saturating_add(self.errors).saturating_add(self.panics)
     }
 
     /// Adds the failures of another part of the run; the earlier message stays.
     pub fn add(&mut self, other: Self) {
-        self.non_finite += other.non_finite;
-        self.errors += other.errors;
-        self.panics += other.panics;
+        self.non_finite = self.non_finite.saturating_add(other.non_finite);
+        self.errors = self.errors.saturating_add(other.errors);
+        self.panics = self.panics.saturating_add(other.panics);
         self.first_message = self.first_message.take().or(other.first_message);
     }
 }

@@ -93,7 +93,8 @@
 //! - **The same seed gives the same bits** on one thread, on many, and across a resumption: every
 //!   random number comes from a stream named by (seed, purpose, generation, individual), see
 //!   [`random`]. Across platforms the last bits of exp and ln may differ, and with them the run.
-//! - **No input panics.** Errors say what is wrong, where, and what mends it.
+//! - **No input panics.** Errors say what is wrong, where, and what mends it; what fits into no memory is one, too
+//!   ([`ConfigError::TooLarge`]). Only an index beyond the end of [`Points`] or of a [`Batch`] panics, as that of a slice does.
 //! - **Nothing is silently on.** Each deviation from the paper's rules is a named setting.
 //! - **Only what was asked is evaluated**: a budget of evaluations is never exceeded, except that
 //!   the initial population is always evaluated.

@@ -74,7 +74,8 @@ pub fn find(name: &str) -> Option<&'static Named> {
 /// From `count` individuals on, doubled at each restart.
 fn restarting(count: usize) -> Box<dyn Method> {
     let first = if count == 0 { 40 } else { count };
-    let resize = move |aep: Aep, doubled: usize| aep.with_population(doubled / 40 * first);
+    let resize =
+        move |aep: Aep, doubled: usize| aep.with_population((doubled / 40).saturating_mul(first));
     Box::new(Restarting::doubling(Aep::practical(), resize))
 }
 

@@ -96,10 +96,11 @@ impl<'a, T: Scalar> Batch<'a, T> {
         self.data
     }
 
-    /// The positions `from..to`.
+    /// The positions `from..to`, as far as there are any.
     #[must_use]
     pub fn slice(&self, from: usize, to: usize) -> Self {
-        let data = &self.data[from * self.dimension..to * self.dimension];
+        let to = to.min(self.len());
+        let data = &self.data[from.min(to) * self.dimension..to * self.dimension];
         Self { dimension: self.dimension, data }
     }
 }

@@ -90,10 +90,10 @@ pub fn uniform<T: Scalar>(rng: &mut Stream) -> T {
     T::of(rng.random::<f64>())
 }
 
-/// One index below `bound`, which must be positive.
+/// One index below `bound`; 0 where there is none.
 #[inline]
 pub fn index(rng: &mut Stream, bound: usize) -> usize {
-    rng.random_range(0..bound)
+    rng.random_range(0..bound.max(1))
 }
 
 /// True or false, each with probability 1/2.

@@ -38,7 +38,8 @@ impl<T: Scalar> Run<T> {
 
     pub fn out_of_evaluations(&self, algorithm: &mut dyn Algorithm<T>, budget: &Budget) -> bool {
         let Some(most) = budget.evaluations else { return false };
-        self.begun() && self.ledger.evaluations + algorithm.ask().len() as u64 > most
+        let next = algorithm.ask().len() as u64;
+        self.begun() && self.ledger.evaluations.saturating_add(next) > most
     }
 
     /// A generation; whether it was told. One that was broken off leaves no trace.
@@ -54,7 +55,7 @@ impl<T: Scalar> Run<T> {
         self.costs.resize(points.len(), T::infinity());
         let asked = noted.as_ref().map_or(problem, |noted| noted);
         let failures = evaluator.evaluate(asked, points, &mut self.costs);
-        self.ledger.elapsed = self.earlier + self.started.elapsed();
+        self.ledger.elapsed = self.earlier.saturating_add(self.started.elapsed());
         if problem.is_broken_off() {
             return Ok(false);
         }
@@ -66,14 +67,14 @@ impl<T: Scalar> Run<T> {
             }
             None => algorithm.tell(&self.costs)?,
         }
-        self.ledger.evaluations += self.costs.len() as u64;
+        self.ledger.evaluations = self.ledger.evaluations.saturating_add(self.costs.len() as u64);
         Ok(true)
     }
 
     /// Errors reach the evaluator as NaN; they are counted as what they are.
     pub fn count_errors(&mut self, problem: &dyn Problem<T>, at_start: u64, before: &Failures) {
         let errors = problem.errors();
-        let new = before.errors + errors.count.saturating_sub(at_start);
+        let new = before.errors.saturating_add(errors.count.saturating_sub(at_start));
         let failures = &mut self.ledger.failures;
         let more = new.saturating_sub(failures.errors);
         failures.errors += more;

@@ -8,7 +8,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use crate::axis::Quantity;
 use crate::model::Model;
 use crate::reference::Reference;
-use crate::simulator::{Plants, SimulationError, Start};
+use crate::simulator::{Plants, SimulationError, Start, check_step};
 
 /// What a closed loop consists of besides plant, reference and controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +37,27 @@ impl Default for Setup {
             max_step: 2.5e-4,
             seed: 0,
         }
+    }
+}
+
+impl Setup {
+    /// Checks the settings and the reference that a loop is to follow with them.
+    fn check(&self, reference: &Reference) -> Result<(), SimulationError> {
+        let samples = reference.position.len();
+        for values in [reference.velocity.len(), reference.acceleration.len()] {
+            if values != samples {
+                return Err(SimulationError::Length { samples, values });
+            }
+        }
+        let (name, value) = ("the sampling time", reference.sample_time);
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(SimulationError::Setting { name, value, need: "it must be above 0 s" });
+        }
+        let (name, value) = ("the limit of the force", self.force_limit);
+        if value.is_nan() || value < 0.0 {
+            return Err(SimulationError::Setting { name, value, need: "it must be 0 or above" });
+        }
+        check_step(samples as f64 * reference.sample_time, self.max_step)
     }
 }
 
@@ -141,13 +162,14 @@ pub struct Run {
 /// Runs `controller` on `model`, which starts at rest on the reference.
 ///
 /// # Errors
-/// The plant runs away, or the reference is too short to be a recording.
+/// The plant runs away, a setting or the reference makes no sense, or the reference is too short to be a recording.
 pub fn closed_loop(
     model: &Model,
     reference: &Reference,
     controller: &mut dyn Controller,
     setup: &Setup,
 ) -> Result<Run, ClosedLoopError> {
+    setup.check(reference)?;
     let mut batch = Plants::new(std::slice::from_ref(model))?.watched();
     let first = reference.position.first().copied().unwrap_or(0.0);
     batch.start(0, &Start::at(first, 0.0));

@@ -13,7 +13,13 @@ pub struct Reference {
     pub acceleration: Vec<f64>,
 }
 
-/// Builds a [`Reference`] piece by piece; every piece begins and ends at rest.
+/// Most samples of a reference.
+pub(crate) const MOST_SAMPLES: f64 = 1e7;
+/// Longest smoothing of a short motion, samples.
+const LONGEST_WINDOW: usize = 100_000;
+
+/// Builds a [`Reference`] piece by piece; every piece begins and ends at rest. A piece without an end, or one that makes
+/// more than 10^7 samples, is left out.
 #[derive(Clone, Debug)]
 pub struct Profile {
     sample_time: f64,
@@ -77,7 +83,11 @@ impl Profile {
     }
 
     fn piece(mut self, duration: f64, velocity: impl Fn(f64) -> f64) -> Self {
-        let samples = (duration / self.sample_time).round() as usize;
+        let samples = (duration / self.sample_time).round();
+        if samples.is_nan() || self.velocity.len() as f64 + samples > MOST_SAMPLES {
+            return self;
+        }
+        let samples = samples as usize;
         let middle = |k: usize| (k as f64 + 0.5) * self.sample_time;
         self.velocity.extend((0..samples).map(|k| velocity(middle(k))));
         self
@@ -86,6 +96,8 @@ impl Profile {
     /// Samples from `start`; accelerations are spread over `smoothing` s, which limits the jerk.
     pub fn build(self, start: f64, smoothing: f64) -> Reference {
         let window = (smoothing / self.sample_time).round().max(1.0) as usize;
+        // Over more than all of the motion there is nothing left to smooth.
+        let window = window.min((2 * self.velocity.len()).max(LONGEST_WINDOW));
         let step = self.sample_time;
         // Rest at both ends takes up what the smoothing spreads beyond them.
         let rest = vec![0.0; window / 2 + 1];

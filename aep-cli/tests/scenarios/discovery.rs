@@ -93,19 +93,6 @@ fn the_json_keeps_the_contract() {
 }
 
 #[test]
-fn threads_change_nothing() {
-    let desk = Desk::new();
-    desk.aep("discover -q --time-limit none --most 1 --json one.json --threads 1").done();
-    desk.aep("discover -q --time-limit none --most 1 --json two.json --threads 2").done();
-    let result = |name: &str| {
-        let mut json = desk.json(name);
-        json["wall_s"] = 0.into();
-        json
-    };
-    assert_eq!(result("one.json"), result("two.json"));
-}
-
-#[test]
 fn where_nothing_is_hidden_nothing_is_found() {
     let desk = Desk::new();
     desk.challenge("nothing", 1, "c");

@@ -1,7 +1,7 @@
 //! Running `aep` in a folder of its own.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -29,6 +29,14 @@ impl Run {
             assert!(self.err.contains(part), "'{part}' is not in:\n{}", self.err);
         }
         &self.err
+    }
+}
+
+fn run(output: Output) -> Run {
+    Run {
+        code: output.status.code(),
+        out: String::from_utf8(output.stdout).unwrap(),
+        err: String::from_utf8(output.stderr).unwrap(),
     }
 }
 
@@ -72,11 +80,39 @@ impl Desk {
             .env_remove("NO_COLOR")
             .output()
             .unwrap();
-        Run {
-            code: output.status.code(),
-            out: String::from_utf8(output.stdout).unwrap(),
-            err: String::from_utf8(output.stderr).unwrap(),
+        run(output)
+    }
+
+    /// Runs `aep` through `sh` with a line in front of it, such as a limit or a redirection behind it.
+    #[cfg(unix)]
+    pub fn shell(&self, before: &str, line: &str, behind: &str) -> Run {
+        let script = format!("{before}\nexec \"$AEP\" {line} {behind}");
+        let output = Command::new("sh")
+            .args(["-c", &script])
+            .env("AEP", env!("CARGO_BIN_EXE_aep"))
+            .current_dir(self.folder.path())
+            .stdin(std::process::Stdio::null())
+            .output()
+            .unwrap();
+        run(output)
+    }
+
+    /// Starts `aep` and kills it with SIGKILL as soon as `now` says so; how it ended where it was sooner.
+    pub fn killed(&self, line: &str, mut now: impl FnMut() -> bool) -> Option<Run> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_aep"));
+        command.args(line.split_whitespace()).current_dir(self.folder.path());
+        command.stdout(std::process::Stdio::piped()).stderr(std::process::Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        while !now() {
+            if child.try_wait().unwrap().is_some() {
+                return Some(run(child.wait_with_output().unwrap()));
+            }
+            std::thread::yield_now();
         }
+        child.kill().unwrap();
+        let ended = run(child.wait_with_output().unwrap());
+        // It may have ended between the last look and the kill.
+        ended.code.is_some().then_some(ended)
     }
 
     /// Runs `aep` and sends it Ctrl-C after `seconds`; sooner where it had ended by itself before that.
@@ -104,12 +140,7 @@ impl Desk {
         std::thread::sleep(std::time::Duration::from_secs_f64(seconds));
         let process = child.id().to_string();
         assert!(Command::new("kill").args(["-INT", &process]).status().unwrap().success());
-        let output = child.wait_with_output().unwrap();
-        Run {
-            code: output.status.code(),
-            out: String::from_utf8(output.stdout).unwrap(),
-            err: String::from_utf8(output.stderr).unwrap(),
-        }
+        run(child.wait_with_output().unwrap())
     }
 
     /// A recording with `effect` hidden in it, in the folder `name`.

@@ -8,6 +8,7 @@ mod browser;
 #[path = "../../../aep-studio/tests/browser/chromium.rs"]
 #[allow(dead_code, reason = "the report's tests use all of it")]
 mod chromium;
+mod mutated;
 mod server;
 mod steps;
 
@@ -31,7 +32,7 @@ fn main() {
         };
         trials.push(Trial::test(*name, run).with_ignored_flag(skipped));
     }
-    for (name, test) in attacks::TESTS.iter().chain(steps::TESTS) {
+    for (name, test) in attacks::TESTS.iter().chain(mutated::TESTS).chain(steps::TESTS) {
         let run = || {
             test();
             Ok(())

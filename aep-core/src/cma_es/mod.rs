@@ -22,9 +22,13 @@ use crate::{
 pub enum Restarts {
     /// The run ends, [`crate::StopReason::Exhausted`].
     Never,
-    /// It starts again at a random place with twice the population (IPOP, Auger & Hansen 2005).
+    /// It starts again at a random place with twice the population (IPOP, Auger & Hansen 2005), up to 1,024 times the first.
     DoublePopulation,
 }
+
+/// How often the population is doubled at most. Where runs end at once, as on a constant cost, one that always doubles
+/// outgrows any memory within some hundred generations.
+const MOST_DOUBLINGS: u32 = 10;
 
 /// Covariance matrix adaptation evolution strategy, (`mu/mu_w`, lambda)-CMA-ES.
 ///
@@ -41,7 +45,8 @@ pub enum Restarts {
 /// | `sigma` | 0.3 | first step size in widths of the domain |
 /// | [`Restarts`] | double the population | what happens on convergence |
 ///
-/// **Limits.** n^2 memory and n^3 time per eigendecomposition: up to a few hundred components.
+/// **Limits.** n^2 memory and n^3 time per eigendecomposition: up to a few hundred components; beyond
+/// some 11,000 a matrix does not fit and is refused.
 ///
 /// Reference: N. Hansen, "The CMA Evolution Strategy: A Tutorial", arXiv:1604.00772, 2016.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,6 +99,7 @@ impl<T: Scalar> Method<T> for CmaEs {
         let valid = self.sigma > 0.0 && self.sigma.is_finite();
         let hint = "must be positive and finite";
         ConfigError::require(valid, "cma-es", "sigma", self.sigma, hint)?;
+        ConfigError::require_fits("covariance", n, n)?;
         let (config, domain, seed) = (self.clone(), start.domain.clone(), start.seed);
         match self.restarts {
             Restarts::Never => Ok(Box::new(Run::first(&config, start, lambda)?)),
@@ -104,7 +110,8 @@ impl<T: Scalar> Method<T> for CmaEs {
                     Ok(Box::new(match attempt.run {
                         0 => Run::first(&config, &start, lambda)?,
                         run => {
-                            let doubled = lambda.saturating_mul(1 << run.min(40));
+                            let doubled = lambda.saturating_mul(1 << run.min(MOST_DOUBLINGS));
+                            ConfigError::require_fits("population", doubled, n)?;
                             Run::again(&config, &start, doubled, attempt.generation)
                         }
                     }))

@@ -67,7 +67,7 @@ impl<'a, P: LeastSquares + ?Sized> LevenbergMarquardt<'a, P> {
     /// A descent from `x`, one number per component of the domain, inside it.
     pub fn new(problem: &'a P, x: &[f64]) -> Self {
         let at = Refined { position: x.to_vec(), cost: problem.objective(x) };
-        let active = (0..x.len()).collect();
+        let active = (0..x.len().min(problem.domain().dimension())).collect();
         Self { problem, at, active, damping: FIRST_DAMPING, bounds: Bounds::Clip }
     }
 
@@ -138,7 +138,7 @@ impl<'a, P: LeastSquares + ?Sized> LevenbergMarquardt<'a, P> {
     }
 
     /// Normal matrix and moment of the residuals, in shares of the widths; none where one is not
-    /// finite.
+    /// finite, or not all positions have as many.
     fn normal(&self, active: &[usize], width: f64) -> Option<Normal> {
         let (x, domain) = (&self.at.position, self.problem.domain());
         let mut candidates = vec![x.clone()];
@@ -150,12 +150,17 @@ impl<'a, P: LeastSquares + ?Sized> LevenbergMarquardt<'a, P> {
             }
         }
         let residuals = self.problem.residuals_batch(Batch::new(x.len(), &candidates.concat()));
+        // Rows of another length make no matrix.
+        let count = residuals.first()?.len();
+        if residuals.len() != candidates.len() || residuals.iter().any(|row| row.len() != count) {
+            return None;
+        }
         // A difference that a bound has cut short is as wide as it is.
         let share = |candidate: usize, k: usize| domain.share(k, candidates[candidate][k]);
         let widths: Vec<f64> = (active.iter().enumerate())
             .map(|(j, k)| share(2 * j + 1, *k) - share(2 * j + 2, *k))
             .collect();
-        let slopes = DMatrix::from_fn(residuals[0].len(), active.len(), |i, j| {
+        let slopes = DMatrix::from_fn(count, active.len(), |i, j| {
             let change = residuals[2 * j + 1][i] - residuals[2 * j + 2][i];
             if change.is_finite() && widths[j] > 0.0 { change / widths[j] } else { 0.0 }
         });
@@ -178,7 +183,11 @@ impl<'a, P: LeastSquares + ?Sized> LevenbergMarquardt<'a, P> {
             // A component that changes nothing must not make the matrix singular.
             damped[(k, k)] += 1e-15 * largest + f64::MIN_POSITIVE;
         }
+        // Slopes near the largest numbers can leave none.
         let change = damped.cholesky()?.solve(moment);
+        if !change.iter().all(|change| change.is_finite()) {
+            return None;
+        }
         let mut x = self.at.position.clone();
         for (k, change) in active.iter().zip(change.iter()) {
             let change = change.clamp(-LONGEST, LONGEST);

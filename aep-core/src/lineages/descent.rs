@@ -179,8 +179,10 @@ impl Descent {
     /// Goes to the best of `points` if that is lower; whether it is.
     fn take_best(&mut self, points: &[f64], costs: &[f64], residuals: &[Vec<f64>]) -> bool {
         let n = self.at.len();
-        let usable =
-            (0..costs.len()).filter(|i| !residuals[*i].is_empty() && costs[*i] < self.cost);
+        // Slopes and residuals are of one length; the first place that has any says which.
+        let count = self.residuals.len();
+        let fits = |row: &Vec<f64>| !row.is_empty() && (count == 0 || row.len() == count);
+        let usable = (0..costs.len()).filter(|i| fits(&residuals[*i]) && costs[*i] < self.cost);
         let Some(best) = usable.min_by(|a, b| costs[*a].total_cmp(&costs[*b])) else {
             return false;
         };

@@ -130,7 +130,8 @@ impl Lineages {
         let hint = "at least four children are needed (0 takes 4 + 3 ln n)";
         ConfigError::require(lambda >= 4, NAME, "population", lambda as f64, hint)?;
         let valid = self.sigma > 0.0 && self.sigma.is_finite();
-        ConfigError::require(valid, NAME, "sigma", self.sigma, "must be positive and finite")
+        ConfigError::require(valid, NAME, "sigma", self.sigma, "must be positive and finite")?;
+        ConfigError::require_fits("covariance", dimension, dimension)
     }
 }
 

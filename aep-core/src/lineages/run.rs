@@ -297,6 +297,9 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
         {
             return self.tell(costs);
         }
+        if residuals.len() != costs.len() {
+            return Err(TellError::Residuals { found: residuals.len(), expected: costs.len() });
+        }
         self.turn.tell(costs.len(), self.points.len())?;
         let costs = self.note(costs);
         let lowest = self.state.lowest();

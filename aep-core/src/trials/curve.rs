@@ -19,6 +19,9 @@ pub struct CurvePoint {
     pub high: f64,
 }
 
+/// Most points of a curve.
+const MOST_POINTS: u64 = 1_000_000;
+
 /// Best cost against evaluations. A trial that ended earlier keeps its last value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve(pub Vec<CurvePoint>);
@@ -34,10 +37,10 @@ impl Trials {
         CurvePoint { evaluations, mean, median: at(0.5), low: at(0.25), high: at(0.75) }
     }
 
-    /// The curve at multiples of `step` evaluations up to `last`.
+    /// The curve at multiples of `step` evaluations up to `last`, at most a million points.
     pub fn curve(&self, step: u64, last: u64) -> Curve {
         let step = step.max(1);
-        Curve((1..=last / step).map(|i| self.after(i * step)).collect())
+        Curve((1..=(last / step).min(MOST_POINTS)).map(|i| self.after(i * step)).collect())
     }
 
     /// The largest number of evaluations any trial used.

@@ -42,7 +42,7 @@ impl Trials {
         let mut reached: Vec<f64> = hits.iter().flatten().map(|hit| *hit as f64).collect();
         reached.sort_by(f64::total_cmp);
         let used = self.trials.iter().zip(&hits).map(|(t, hit)| hit.unwrap_or(t.evaluations));
-        let spent: u64 = used.sum();
+        let spent = used.fold(0, u64::saturating_add);
         let successes = reached.len();
         let count = self.trials.len();
         let seconds: f64 = self.trials.iter().map(|t| t.elapsed.as_secs_f64()).sum();
@@ -56,7 +56,7 @@ impl Trials {
             range: (quantile(&costs, 0.0), quantile(&costs, 1.0)),
             evaluations_to_target: (successes > 0).then(|| quantile(&reached, 0.5)),
             expected_running_time: (successes > 0).then(|| spent as f64 / successes as f64),
-            failures: self.trials.iter().map(|t| t.failures.total()).sum(),
+            failures: self.trials.iter().fold(0, |sum, t| sum.saturating_add(t.failures.total())),
             seconds: seconds / count as f64,
         }
     }

@@ -1,6 +1,6 @@
 //! References as an engineer asks for them: ramp, sine, trapezoid, velocity reversal, samples.
 
-use crate::reference::{Profile, Reference};
+use crate::reference::{MOST_SAMPLES, Profile, Reference};
 
 /// A reference by its shape; SI units of the axis. All begin at position 0 and time 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +48,9 @@ impl Course {
         }
     }
 
-    /// Samples every `sample_time` s over `duration` s.
+    /// Samples every `sample_time` s over `duration` s, at most 10^7.
     pub fn sampled(&self, sample_time: f64, duration: f64) -> Reference {
-        let samples = (duration / sample_time).round() as usize + 1;
+        let samples = (duration / sample_time).round().min(MOST_SAMPLES) as usize + 1;
         if let Self::Trapezoid { distance, speed, acceleration } = *self {
             return trapezoid(distance, speed, acceleration, sample_time, samples);
         }
@@ -103,8 +103,10 @@ fn trapezoid(
 ) -> Reference {
     let rest = 0.25 * travel_time(distance, speed, acceleration);
     let mut profile = Profile::new(sample_time);
-    let mut built = 0.0;
-    while built < samples as f64 * sample_time {
+    let (mut built, mut left) = (0.0, samples);
+    // A way of less than no time never adds up to the duration.
+    while built < samples as f64 * sample_time && left > 0 {
+        left -= 1;
         for way in [distance, -distance] {
             profile = profile.dwell(rest).travel(way, speed, acceleration).dwell(rest);
         }

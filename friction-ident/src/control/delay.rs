@@ -9,11 +9,18 @@ pub struct Delay {
     fraction: f64,
 }
 
+/// Longest delay, samples.
+const MOST: f64 = 1e7;
+
 impl Delay {
-    /// A line that reaches back over `samples` (at least 0, need not be whole).
+    /// A line that reaches back over `samples` (0 to 10^7, need not be whole).
     pub fn new(samples: f64) -> Self {
-        let whole = samples.max(0.0).floor();
-        Self { line: vec![0.0; whole as usize + 2], head: 0, fraction: samples.max(0.0) - whole }
+        let whole = samples.clamp(0.0, MOST).floor();
+        Self {
+            line: vec![0.0; whole as usize + 2],
+            head: 0,
+            fraction: samples.clamp(0.0, MOST) - whole,
+        }
     }
 
     /// Values that the line holds.

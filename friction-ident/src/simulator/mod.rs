@@ -28,6 +28,7 @@ mod step;
 pub use error::SimulationError;
 pub use free_run::{deviation, free_run};
 pub use plants::{Plants, Start};
+pub(crate) use run::check_step;
 pub use run::{DEFAULT_MAX_STEP, Input, Trajectory, simulate};
 
 #[cfg(test)]

@@ -8,6 +8,22 @@ use crate::model::Model;
 /// Longest step, s, unless another is asked for. Sample intervals are divided to stay below.
 pub const DEFAULT_MAX_STEP: f64 = 1e-3;
 
+/// Most steps of a simulation: hours for the cheapest plant.
+const MOST_STEPS: f64 = 1e11;
+
+/// Refuses a longest step by which a simulation of `duration` s does not come to an end.
+pub(crate) fn check_step(duration: f64, max_step: f64) -> Result<(), SimulationError> {
+    let refused =
+        |need| Err(SimulationError::Setting { name: "the longest step", value: max_step, need });
+    if max_step.is_nan() || max_step <= 0.0 {
+        return refused("it must be above 0 s");
+    }
+    if duration / max_step > MOST_STEPS {
+        return refused("it would take more than 10^11 steps");
+    }
+    Ok(())
+}
+
 /// A recorded command.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
@@ -40,17 +56,15 @@ impl<'a> Input<'a> {
         if samples != values {
             return Err(SimulationError::Length { samples, values });
         }
-        if self.max_step.is_nan() || self.max_step <= 0.0 {
-            let (name, value) = ("the longest step", self.max_step);
-            return Err(SimulationError::Setting { name, value, need: "it must be above 0 s" });
-        }
         for (k, pair) in self.time.windows(2).enumerate() {
             let (before, after) = (pair[0], pair[1]);
-            if before.is_nan() || after.is_nan() || after <= before {
+            if !before.is_finite() || !after.is_finite() || after <= before {
                 return Err(SimulationError::Time { index: k + 1, before, after });
             }
         }
-        Ok(())
+        let duration =
+            self.time.last().zip(self.time.first()).map_or(0.0, |(last, first)| last - first);
+        check_step(duration, self.max_step)
     }
 
     /// Number and length of the steps from sample `k` to the next.

@@ -6,7 +6,7 @@ use missing_physics::{Hold, Recording};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{WindowError, WindowOptions};
-use crate::simulator::Input;
+use crate::simulator::{Input, check_step};
 
 /// Samples on either side of a start that its guess is taken from.
 const NEIGHBOURS: usize = 12;
@@ -30,13 +30,12 @@ impl<'a> Data<'a> {
     pub fn new(recording: &'a Recording, options: &WindowOptions) -> Result<Self, WindowError> {
         let (force, position) = (recording.require("force")?, recording.require("position")?);
         let time = recording.time();
-        let none = Input::new(&[], &[], recording.hold()).with_max_step(options.max_step);
-        none.check()?;
         let longest = recording
             .segments()
             .iter()
             .flat_map(|segment| time[segment.clone()].windows(2).map(|pair| pair[1] - pair[0]))
             .fold(0.0, f64::max);
+        check_step(longest * time.len() as f64, options.max_step)?;
         Ok(Self {
             time,
             force,
