@@ -17,7 +17,7 @@ struct Shaken {
 }
 
 impl Controller for Shaken {
-    fn command(&mut self, sample: &friction_ident::closed_loop::Sample) -> f64 {
+    fn command(&mut self, sample: &closed_loop::Sample) -> f64 {
         let disturbance = 0.15 * self.random.sample::<f64, _>(StandardNormal);
         self.disturbance.push(disturbance);
         self.pd.command(sample) + disturbance
