@@ -176,6 +176,8 @@ mod tests {
     use crate::axis::Axis;
     use crate::driven::{MeasuredMotion, force_along};
     use crate::model::Model;
+    use crate::simulator::{Input, Start, simulate};
+    use missing_physics::Hold;
 
     /// Friction along a velocity ramp of 0.1 m/s^2 from rest, Stribeck hump of 4 N at 5 mm/s.
     fn ramp(memory: &str) -> Vec<f64> {
@@ -208,6 +210,23 @@ mod tests {
             let t = k as f64 * 1e-3;
             let seen = 0.1 * (t - 0.02 * (1.0 - (-t / 0.02).exp()));
             assert!((force - hump(seen)).abs() < 5e-3, "sample {k}: {force} {}", hump(seen));
+        }
+    }
+
+    #[test]
+    fn at_rest_the_hump_comes_back() {
+        let model = Model::new(Axis::Linear, 2.0)
+            .and_then(|m| m.with("coulomb", &[("F_C", 3.0)]))
+            .and_then(|m| m.with("stribeck", &[("dF", 4.0), ("v_s", 5e-3)]));
+        let time: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-3).collect();
+        let force: Vec<f64> = time.iter().map(|t| 2.0 * (t - 1.0).max(0.0)).collect();
+        for memory in ["frictional-memory", "frictional-memory:lag"] {
+            let model = model.clone().and_then(|m| m.with(memory, &[("tau_L", 0.02)])).unwrap();
+            let input = Input::new(&time, &force, Hold::ZeroOrder);
+            let moves = simulate(&model, &input, &Start::at(0.0, 0.1)).unwrap().velocity;
+            let rests = moves.iter().position(|v| *v == 0.0).unwrap();
+            let leaves = rests + moves[rests..].iter().position(|v| *v != 0.0).unwrap();
+            assert!((force[leaves] - 7.0).abs() < 0.02, "{memory}: {}", force[leaves]);
         }
     }
 }

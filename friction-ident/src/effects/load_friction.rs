@@ -158,6 +158,21 @@ mod tests {
     }
 
     #[test]
+    fn a_table_that_came_to_rest_breaks_away_at_its_level() {
+        let model = Model::new(Axis::Linear, 2.0)
+            .and_then(|m| m.with("coulomb", &[("F_C", 5.0)]))
+            .and_then(|m| m.with("load-friction:inertia", &[("c", 0.5)]))
+            .unwrap();
+        let time: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-3).collect();
+        let force: Vec<f64> = time.iter().map(|t| 2.0 * (t - 1.0).max(0.0)).collect();
+        let input = Input::new(&time, &force, Hold::ZeroOrder);
+        let moves = simulate(&model, &input, &Start::at(0.0, 0.1)).unwrap().velocity;
+        let rests = moves.iter().position(|v| *v == 0.0).unwrap();
+        let leaves = rests + moves[rests..].iter().position(|v| *v != 0.0).unwrap();
+        assert!(time[rests] < 0.1 && (force[leaves] - 5.0).abs() < 0.01, "{}", force[leaves]);
+    }
+
+    #[test]
     fn the_force_along_a_simulated_motion_is_the_one_that_made_it() {
         for (form, values) in [
             ("load-friction:inertia", &[("c", 1.0)][..]),

@@ -90,7 +90,7 @@ vectorised! {
         }
     }
 
-    /// Lanes at rest with less than the level upon them spend what is left at rest.
+    /// Lanes at rest with less than the level upon them spend what is left at rest, where nothing accelerates.
     pub(super) fn rest(
         v: &[f64],
         drive: &[f64],
@@ -98,18 +98,20 @@ vectorised! {
         elements: &[f64],
         level: &[f64],
         left: &mut [f64],
+        slope: &mut [f64],
         dwell: &mut [f64],
         time: &mut [f64],
         taken: &mut [f64],
     ) {
         let n = v.len();
         let (drive, force, elements) = (&drive[..n], &force[..n], &elements[..n]);
-        let (level, left, dwell) = (&level[..n], &mut left[..n], &mut dwell[..n]);
-        let (time, taken) = (&mut time[..n], &mut taken[..n]);
+        let (level, left, slope) = (&level[..n], &mut left[..n], &mut slope[..n]);
+        let (dwell, time, taken) = (&mut dwell[..n], &mut time[..n], &mut taken[..n]);
         for i in 0..n {
             let applied = drive[i] - force[i] - elements[i];
             let rests = v[i] == 0.0 && applied.abs() <= level[i];
             let spent = if rests { left[i] } else { 0.0 };
+            slope[i] = if spent > 0.0 { 0.0 } else { slope[i] };
             dwell[i] += spent;
             time[i] += spent;
             taken[i] = spent;
@@ -249,7 +251,7 @@ vectorised! {
     }
 
     /// Takes the piece, up to the stop where there is one in it. Without a friction level there is nothing to stop
-    /// for.
+    /// for. A lane that rested has `taken` the time of its rest.
     pub(super) fn close_rigid(
         mean: &[f64],
         direction: &[f64],
@@ -281,10 +283,10 @@ vectorised! {
             let share = if stops && !held { -v0 / change } else { 1.0 };
             let spent = share * r;
             let moved = if stops { 0.5 * v0 * spent } else { r * mean[i] };
-            taken[i] = if moves { spent } else { 0.0 };
+            taken[i] = if moves { spent } else { taken[i] };
             displacement[i] = if moves { moved } else { 0.0 };
             x[i] += displacement[i];
-            time[i] += taken[i];
+            time[i] += if moves { spent } else { 0.0 };
             slope[i] = if held { 0.0 } else if moves { change / r } else { slope[i] };
             dwell[i] = if held { dwell[i] + r } else if stops { 0.0 } else { dwell[i] };
             v[i] = if stops { 0.0 } else if moves { end } else { v0 };

@@ -127,15 +127,11 @@ impl Plants {
             &s.elements,
             &s.level,
             &mut s.left,
+            &mut self.slope,
             &mut self.dwell,
             &mut self.time,
             &mut s.taken,
         );
-        // A lane that rests takes its elements through the time of its rest.
-        if attached && s.taken.iter().any(|taken| *taken > 0.0) {
-            s.displacement.fill(0.0);
-            self.commit_elements();
-        }
         self.balance();
         if attached {
             self.newton();
@@ -158,6 +154,7 @@ impl Plants {
             &mut self.sliding,
             &mut self.time,
         );
+        // A lane that rests takes its elements and memories through the time of its rest.
         if attached {
             self.commit_elements();
         }

@@ -6,8 +6,8 @@ static void close_piece(Plant *m)
     /* What cannot leave its rest, because the level rises with speed, stays there. */
     const int held = stops && v == 0.0;
     const double spent = (stops && !held ? -v / change : 1.0) * r;
+    /* What rested has taken the time of its rest. */
     if (!(r > 0.0)) {
-        m->taken = 0.0;
         m->displacement = 0.0;
         m->left = 0.0;
         return;
@@ -41,13 +41,11 @@ static void take_piece(Plant *m)
     m->taken = 0.0;
     if (m->v == 0.0 && fabs(applied) <= m->level) {
         m->taken = m->left;
+        m->slope = m->left > 0.0 ? 0.0 : m->slope;
         m->dwell += m->left;
         m->time += m->left;
         m->left = 0.0;
     }
-#if @ATTACHED@
-    commit(m);
-#endif
     slope = positive(m->damping);
     others = m->drive - m->force - m->level * m->direction + slope * m->predicted;
     m->inertia = 2.0 * MASS + m->left * slope;
