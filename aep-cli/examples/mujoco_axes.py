@@ -231,6 +231,8 @@ def verdict(kind, found):
     effect = lambda name: name.split(":")[0]  # noqa: E731
     added = [effect(name) for name in found["added"]]
     sets = [[effect(name) for name in rival["effects"]] for rival in found.get("ambiguous", [])]
+    if found["verdict"] == "stopped":
+        return "stopped"
     if kind in SILENT:
         return "silent" if not added else "FALSE NAME"
     right = HIDDEN[kind]
