@@ -41,7 +41,8 @@ pub struct Domain<T: Scalar = f64> {
     search_upper: Vec<T>,
 }
 
-/// What a domain is written as: whatever reads it has it checked again.
+/// What a domain is written as: whatever reads it has it checked again. A checkpoint tells fields by their order alone, so that
+/// those that follow from others are read, too.
 #[derive(Deserialize)]
 #[serde(bound = "")]
 struct Unchecked<T: Scalar> {

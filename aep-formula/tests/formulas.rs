@@ -125,7 +125,8 @@ proptest! {
     #[test]
     fn sums_and_products_agree_with_rust(a in -1e3f64..1e3, b in -1e3f64..1e3, c in 0.1f64..10.0) {
         let formula = Formula::parse("a*b + c/a - c^2*(a - b)").unwrap();
-        let expected = a * b + c / a - c.powf(2.0) * (a - b);
+        // A compiler that sees the exponent writes c * c, which is not always the last bit of the power.
+        let expected = a * b + c / a - c.powf(std::hint::black_box(2.0)) * (a - b);
         prop_assert_eq!(formula.value(&[a, b, c]).to_bits(), expected.to_bits());
     }
 }

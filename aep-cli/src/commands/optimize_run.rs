@@ -1,13 +1,12 @@
 //! `aep optimize` with `--trace`, `--checkpoint` or `--resume`: a single run, followed and saved.
 
-use std::cell::RefCell;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use aep_core::{
-    Budget, Driver, Method, Observer, Outcome, Progress as Generation, RunError, Start, StopReason,
-    Trace, TraceFormat,
+    Budget, Driver, Method, Observer as _, Outcome, Progress as Generation, RunError, Start,
+    StopReason, Trace, TraceFormat,
 };
 use aep_problems::Known;
 
@@ -54,15 +53,14 @@ pub fn run(
         |error: RunError| Failure::from_lines(&error.to_string()).with_hint_unless_given(HINT);
     let start = Start::new(problem.domain(), seed);
     let mut algorithm = method.start(&start).map_err(|error| refused(error.into()))?;
-    let trace = args.trace.as_deref().map(|path| trace(path, problem)).transpose()?;
-    let trace = trace.map(RefCell::new);
+    let mut trace = args.trace.as_deref().map(|path| trace(path, problem)).transpose()?;
     let progress = Progress::new(global.quiet);
     let mut driver = Driver::new(budget).with_stop_flag(stop::flag()).in_parallel();
     driver = driver.with_observer(|now: &Generation<'_>| {
         progress.say(format!("generation {}, cost {:.3e}", now.generation, now.best_cost()));
     });
-    if let Some(trace) = &trace {
-        driver = driver.with_observer(Followed(trace));
+    if let Some(trace) = &mut trace {
+        driver = driver.with_observer(|now: &Generation<'_>| trace.generation(now));
     }
     // What is resumed goes on to be saved where it was.
     if let Some(path) = args.checkpoint.as_ref().or(args.resume.as_ref()) {
@@ -75,25 +73,15 @@ pub fn run(
     let outcome = outcome.map_err(refused)?;
     drop(driver);
     drop(progress);
+    if let Some(trace) = &mut trace {
+        trace.finished(&outcome);
+    }
     finish(&outcome, &method.name(), problem, global)?;
-    match (&args.trace, trace.as_ref().map(RefCell::borrow)) {
-        (Some(path), Some(trace)) => trace.error().map_or(Ok(()), |error| {
+    match (&args.trace, trace.as_ref().and_then(Trace::error)) {
+        (Some(path), Some(error)) => {
             Err(Failure::failed(format!("cannot write the trace: {error}")).in_file(path))
-        }),
+        }
         _ => Ok(()),
-    }
-}
-
-/// A trace that is asked for its error when the run is over.
-struct Followed<'a>(&'a RefCell<Trace<BufWriter<File>>>);
-
-impl Observer for Followed<'_> {
-    fn generation(&mut self, progress: &Generation<'_>) {
-        Observer::generation(&mut *self.0.borrow_mut(), progress);
-    }
-
-    fn finished(&mut self, outcome: &Outcome) {
-        self.0.borrow_mut().finished(outcome);
     }
 }
 

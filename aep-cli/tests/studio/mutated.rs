@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use aep_core::random::{self, Purpose, Stream, Streams};
+use aep_core::random::{Purpose, Stream, Streams, index};
 use serde_json::{Value, json};
 
 use crate::server::Server;
@@ -66,10 +66,6 @@ fn seeds() -> Vec<(&'static str, Value)> {
         ),
         ("POST /api/upload?name=run.csv", Value::Null),
     ]
-}
-
-fn index(random: &mut Stream, bound: usize) -> usize {
-    random::index(random, bound)
 }
 
 /// What stands where something else was expected.
@@ -153,7 +149,7 @@ fn mutated_requests() {
             0 => path = changed_path(&path, random),
             1 if !bytes.is_empty() => {
                 let at = index(random, bytes.len());
-                bytes[at] = random::uniform::<f64>(random).mul_add(255.0, 0.0) as u8;
+                bytes[at] = index(random, 256) as u8;
             }
             _ => {}
         }

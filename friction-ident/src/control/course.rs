@@ -50,7 +50,7 @@ impl Course {
 
     /// Samples every `sample_time` s over `duration` s, at most 10^7.
     pub fn sampled(&self, sample_time: f64, duration: f64) -> Reference {
-        let samples = (duration / sample_time).round().min(MOST_SAMPLES) as usize + 1;
+        let samples = (duration / sample_time).round().clamp(0.0, MOST_SAMPLES) as usize + 1;
         if let Self::Trapezoid { distance, speed, acceleration } = *self {
             return trapezoid(distance, speed, acceleration, sample_time, samples);
         }
@@ -103,10 +103,12 @@ fn trapezoid(
 ) -> Reference {
     let rest = 0.25 * travel_time(distance, speed, acceleration);
     let mut profile = Profile::new(sample_time);
-    let (mut built, mut left) = (0.0, samples);
+    let mut built = 0.0;
     // A way of less than no time never adds up to the duration.
-    while built < samples as f64 * sample_time && left > 0 {
-        left -= 1;
+    for _ in 0..samples {
+        if built >= samples as f64 * sample_time {
+            break;
+        }
         for way in [distance, -distance] {
             profile = profile.dwell(rest).travel(way, speed, acceleration).dwell(rest);
         }

@@ -15,12 +15,10 @@ const MOST: f64 = 1e7;
 impl Delay {
     /// A line that reaches back over `samples` (0 to 10^7, need not be whole).
     pub fn new(samples: f64) -> Self {
-        let whole = samples.clamp(0.0, MOST).floor();
-        Self {
-            line: vec![0.0; whole as usize + 2],
-            head: 0,
-            fraction: samples.clamp(0.0, MOST) - whole,
-        }
+        // What is no number is no delay.
+        let samples = if samples.is_nan() { 0.0 } else { samples.clamp(0.0, MOST) };
+        let whole = samples.floor();
+        Self { line: vec![0.0; whole as usize + 2], head: 0, fraction: samples - whole }
     }
 
     /// Values that the line holds.

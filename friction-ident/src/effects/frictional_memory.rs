@@ -173,11 +173,10 @@ impl Memory for Lagged {
 
 #[cfg(test)]
 mod tests {
+    use super::super::testing::breaks_away;
     use crate::axis::Axis;
     use crate::driven::{MeasuredMotion, force_along};
     use crate::model::Model;
-    use crate::simulator::{Input, Start, simulate};
-    use missing_physics::Hold;
 
     /// Friction along a velocity ramp of 0.1 m/s^2 from rest, Stribeck hump of 4 N at 5 mm/s.
     fn ramp(memory: &str) -> Vec<f64> {
@@ -218,15 +217,10 @@ mod tests {
         let model = Model::new(Axis::Linear, 2.0)
             .and_then(|m| m.with("coulomb", &[("F_C", 3.0)]))
             .and_then(|m| m.with("stribeck", &[("dF", 4.0), ("v_s", 5e-3)]));
-        let time: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-3).collect();
-        let force: Vec<f64> = time.iter().map(|t| 2.0 * (t - 1.0).max(0.0)).collect();
         for memory in ["frictional-memory", "frictional-memory:lag"] {
             let model = model.clone().and_then(|m| m.with(memory, &[("tau_L", 0.02)])).unwrap();
-            let input = Input::new(&time, &force, Hold::ZeroOrder);
-            let moves = simulate(&model, &input, &Start::at(0.0, 0.1)).unwrap().velocity;
-            let rests = moves.iter().position(|v| *v == 0.0).unwrap();
-            let leaves = rests + moves[rests..].iter().position(|v| *v != 0.0).unwrap();
-            assert!((force[leaves] - 7.0).abs() < 0.02, "{memory}: {}", force[leaves]);
+            let force = breaks_away(&model);
+            assert!((force - 7.0).abs() < 0.02, "{memory}: {force}");
         }
     }
 }

@@ -97,3 +97,14 @@ pub fn along_and_simulated(effects: &[(&str, &[(&str, f64)])], left_out: Option<
     assert!(counted.clone().count() > time.len() / 4, "it hardly moves");
     counted.map(|k| (asked[k] - force[k]).abs()).fold(0.0, f64::max)
 }
+
+/// The force, N, at which a model moves again that came to rest from 0.1 m/s, and is pushed by 2 N/s from 1 s on.
+pub fn breaks_away(model: &Model) -> f64 {
+    let time: Vec<f64> = (0..6000).map(|k| f64::from(k) * 1e-3).collect();
+    let force: Vec<f64> = time.iter().map(|t| 2.0 * (t - 1.0).max(0.0)).collect();
+    let input = Input::new(&time, &force, Hold::ZeroOrder);
+    let velocity = simulate(model, &input, &Start::at(0.0, 0.1)).unwrap().velocity;
+    let rests = velocity.iter().position(|v| *v == 0.0).unwrap();
+    assert!(time[rests] < 0.1, "it slides on");
+    force[rests + velocity[rests..].iter().position(|v| *v != 0.0).unwrap()]
+}

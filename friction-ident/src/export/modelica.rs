@@ -17,8 +17,8 @@ use crate::model::Model;
 /// sensor shows it, velocity of the mass, force of the drive on it; all are signal connectors, which those of
 /// `Modelica.Blocks` connect to. Parameters: all of the model with unit and meaning, position and velocity at the start,
 /// and, with an elastic contact, its utilisation then. Rigid friction is a state machine of events: what sticks does not
-/// creep, and no speed regularises anything; an elastic contact follows a level that falls within 1 microsecond. Simulated to a small tolerance it is what [`crate::simulate`] comes to as its
-/// steps become short.
+/// creep, and no speed regularises anything; an elastic contact follows a level that falls within 1 microsecond. Simulated
+/// to a small tolerance it is what [`crate::simulate`] comes to as its steps become short.
 ///
 /// Expressed: every effect that an FMU simulates, but, beside an elastic contact, those whose level jumps while it holds or
 /// depends on the acceleration. What is left out (those, laws of one's own, signals, free curves of the contact) is listed.
@@ -141,13 +141,13 @@ impl<'a> Drive<'a> {
     }
 
     fn friction(&self) -> Friction {
-        let contact = self.parts.iter().find_map(|part| part.contact);
+        let contact = self.parts.iter().find_map(|part| Some((part.contact?, part.prefix.clone())));
         // The last hump and the last velocity count, as in the simulator.
         let last = |of: fn(&Part) -> &str| {
             self.parts.iter().rev().map(of).find(|text| !text.is_empty()).unwrap_or_default()
         };
         Friction {
-            contact: contact.map(|contact| (contact, self.prefix_of_contact())),
+            contact,
             levels: Levels {
                 sum: self.sum(|part| &part.level),
                 at_start: self.sum(|part| part.level_at_start.unwrap_or(&part.level)),
@@ -159,13 +159,6 @@ impl<'a> Drive<'a> {
             dwells: self.parts.iter().any(|part| part.reads_dwell),
             slides: self.parts.iter().any(|part| part.reads_dwell || part.reads_sliding),
         }
-    }
-
-    fn prefix_of_contact(&self) -> String {
-        let contact = |term: &&crate::model::ModelEffect| {
-            term.effect().about().acts_on(crate::effects::Slot::Contact)
-        };
-        self.model.terms().iter().find(contact).map_or(String::new(), part::prefix)
     }
 
     /// What comes out of the drive, and what the sensor shows, of what goes in.

@@ -10,6 +10,8 @@ use crate::model::ModelEffect;
 /// In declarations `@velocity` is that of the mass at the start.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Part {
+    /// What the names of its parameters and variables begin with.
+    pub prefix: String,
     /// Force that resists, of `x`, `v`, `time`.
     pub smooth: String,
     /// Addend of the friction level.
@@ -92,6 +94,7 @@ impl Part {
                 *line = names(line);
             }
         }
+        part.prefix = identifier(term.name());
         Ok(part)
     }
 
@@ -389,9 +392,4 @@ fn gap_with_load() -> Part {
             end("+", "min")
         ),
     )
-}
-
-/// The prefix of the variables of a term.
-pub(super) fn prefix(term: &ModelEffect) -> String {
-    identifier(term.name())
 }
