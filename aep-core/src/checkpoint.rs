@@ -125,6 +125,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return File::options().write(true).open(&path)?.write_all(bytes);
     }
+    // Always the same name: a run that is killed again and again leaves one such file, not many.
     let mut beside = path.as_os_str().to_owned();
     beside.push(".new");
     let beside = PathBuf::from(beside);

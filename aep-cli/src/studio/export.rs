@@ -41,6 +41,7 @@ pub fn write(
         }
         Form::C => by_command("c", format!("c-{id}")),
         Form::Fmu => by_command("fmu", format!("model_{id}.fmu")),
+        Form::Modelica => by_command("modelica", format!("model_{id}.mo")),
         Form::Mjcf => by_command("mjcf", format!("model-{id}.xml")),
         Form::Urdf => by_command("urdf", format!("model-{id}.urdf")),
     }

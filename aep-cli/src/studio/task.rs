@@ -14,6 +14,8 @@ pub enum Form {
     C,
     /// The model as a functional mock-up unit.
     Fmu,
+    /// The model in Modelica.
+    Modelica,
     /// The model as a scene that `MuJoCo` reads.
     Mjcf,
     /// The model as a robot description.
@@ -28,6 +30,7 @@ impl Form {
             Self::Series => "the series",
             Self::C => "the compensator in C",
             Self::Fmu => "the FMU",
+            Self::Modelica => "the Modelica model",
             Self::Mjcf => "the scene for MuJoCo",
             Self::Urdf => "the robot description",
         }

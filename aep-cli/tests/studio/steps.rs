@@ -282,7 +282,7 @@ fn exports() {
     let (folder, server) = served();
     server.example();
     server.task(&json!({"task": "add", "from": 0, "effect": "stribeck"}));
-    for form in ["report", "series", "c", "mjcf", "urdf"] {
+    for form in ["report", "series", "c", "modelica", "mjcf", "urdf"] {
         server.task(&json!({"task": "export", "from": 1, "form": form}));
     }
     let state = server.state();
@@ -293,6 +293,7 @@ fn exports() {
         "exports/series-1.csv",
         "exports/c-1/compensator.c",
         "exports/model-1.xml",
+        "exports/model_1.mo",
         "exports/model-1.urdf",
     ] {
         assert!(files.contains(&file), "{file} is not in {files:?}");

@@ -25,7 +25,7 @@ function drawNext(state) {
 
 const fileLink = (path) => element("a", { href: `/api/file?path=${encodeURIComponent(path)}`, download: path.split("/").at(-1) }, path);
 
-const FORMS = [["report", "Report"], ["series", "Series (CSV)"], ["c", "Compensator in C"], ["fmu", "FMU"], ["mjcf", "MuJoCo"], ["urdf", "URDF"]];
+const FORMS = [["report", "Report"], ["series", "Series (CSV)"], ["c", "Compensator in C"], ["fmu", "FMU"], ["modelica", "Modelica"], ["mjcf", "MuJoCo"], ["urdf", "URDF"]];
 
 function drawFiles(state) {
   draw("files", [state.chosen, state.files], () => {
