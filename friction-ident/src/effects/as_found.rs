@@ -7,10 +7,14 @@ pub struct AsFound<'a> {
     pub values: &'a [f64],
     /// Where the search for each of them ended below.
     pub least: &'a [f64],
+    /// Where it ended above.
+    pub most: &'a [f64],
     /// Mass or inertia of the model.
     pub mass: f64,
     /// Root mean square of the recorded force.
     pub force: f64,
+    /// One count of the position, m or rad: that of the encoder, or of one whose counts are as large as the noise.
+    pub count: f64,
 }
 
 impl AsFound<'_> {
@@ -21,7 +25,17 @@ impl AsFound<'_> {
         factor: f64,
         meaning: &'static str,
     ) -> Option<Refused> {
-        let (value, limit) = (self.values[k], factor * self.least[k]);
+        self.within((k, name), factor * self.least[k], meaning)
+    }
+
+    /// The same of one that is no larger than a `limit`.
+    pub fn within(
+        &self,
+        (k, name): (usize, &'static str),
+        limit: f64,
+        meaning: &'static str,
+    ) -> Option<Refused> {
+        let value = self.values[k];
         (value <= limit).then_some(Refused { name, value, limit, unit_of: name, meaning })
     }
 }

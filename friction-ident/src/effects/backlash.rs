@@ -22,6 +22,9 @@ const WIDTH: Parameter =
 
 /// A gap below this multiple of the least one is none.
 const CLOSED: f64 = 1.05;
+/// Counts of the position within which nothing is known of a gap: each of the two readings between which it is crossed is
+/// half a count from where the drive is, on either side.
+const COUNTS: f64 = 2.0;
 
 static FORMS: [&dyn Effect; 1] = [&two_mass::TwoMass];
 static ABOUT: About = About {
@@ -69,9 +72,12 @@ impl Effect for Backlash {
     }
 }
 
-/// Why a gap is none that is as narrow as its search allows: it is a coupling then.
+/// Why a gap is none that is as narrow as its search allows, a coupling then, or that no encoder sees.
 fn closed(found: &AsFound<'_>, width: usize) -> Option<Refused> {
-    found.at_least((width, "b"), CLOSED, "the gap is as narrow as it may be")
+    let width = (width, "b");
+    let narrow = found.at_least(width, CLOSED, "the gap is as narrow as it may be");
+    let hidden = "the gap is narrower than two counts of the position";
+    narrow.or_else(|| found.within(width, COUNTS * found.count, hidden))
 }
 
 /// State: place of the drive in the gap, -1/2..1/2 of its width.

@@ -32,9 +32,9 @@ const ZETA: Parameter =
 /// sqrt((1 - 1/sqrt 2)/2).
 const SILENT: f64 = 0.383;
 
-/// A frequency below this multiple of the least one is at it: what swings so slowly takes the mass along, and hides how
-/// large that is.
-const SLOW: f64 = 1.001;
+/// A frequency within this factor of an end of its search is there: what swings so slowly takes the mass along, and hides how
+/// large that is; what swings so fast is not seen to swing.
+const AT: f64 = 1.001;
 
 /// Why a coupling is none. A force drives the mass, nothing blocks it: what rings are both bodies against each other, damped
 /// by `zeta sqrt(1 + m_L/m)`.
@@ -43,8 +43,11 @@ fn not_one(found: &AsFound<'_>) -> Option<Refused> {
     let limit = SILENT / (1.0 + load / found.mass).sqrt();
     let silent =
         Refused { name: "zeta", value: zeta, limit, unit_of: "zeta", meaning: "nothing rings" };
-    let slow = found.at_least((1, "f"), SLOW, "it swings as slowly as it may");
-    slow.or_else(|| (zeta >= limit).then_some(silent))
+    let slow = found.at_least((1, "f"), AT, "it swings as slowly as it may");
+    let (f, most) = (found.values[1], found.most[1]);
+    let meaning = "it swings as fast as it may";
+    let fast = Refused { name: "f", value: f, limit: most, unit_of: "f", meaning };
+    slow.or_else(|| (AT * f >= most).then_some(fast)).or_else(|| (zeta >= limit).then_some(silent))
 }
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];

@@ -205,13 +205,15 @@ impl FrictionFamily {
         vanished.or_else(|| {
             model.terms.iter().enumerate().find_map(|(place, term)| {
                 let effect = self.effects[term.checked_sub(1)?];
-                let (values, least) =
-                    self.in_full(effect, *term, &model.values[model.range(self, place)]);
+                let full = self.in_full(effect, *term, &model.values[model.range(self, place)]);
+                let of = |k: usize| full.iter().map(|of| of[k]).collect::<Vec<f64>>();
                 let found = AsFound {
-                    values: &values,
-                    least: &least,
+                    values: &of(0),
+                    least: &of(1),
+                    most: &of(2),
                     mass: self.mass_of(model),
                     force: self.force(),
+                    count: self.position_deviation() * 12.0f64.sqrt(),
                 };
                 let Refused { name, value, limit, unit_of, meaning } = effect.refused(&found)?;
                 let unit = effect.about().parameter(unit_of).map_or("", |k| {
@@ -229,16 +231,16 @@ impl FrictionFamily {
     }
 
     /// Values of a term with those that are known from elsewhere, in the order of its effect's table, and the limits of
-    /// their search below.
-    fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    /// their search below and above.
+    fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> Vec<[f64; 3]> {
         let parameters = &self.terms[term].parameters;
         let table = effect.about().parameters.iter().filter(|p| !super::limits::is_fixed(p));
-        table
-            .filter_map(|p| match parameters.iter().position(|free| free.name == p.name) {
-                Some(k) => Some((fitted[k], parameters[k].lower)),
-                None => Some((self.known_value(effect, p.name)?, 0.0)),
-            })
-            .unzip()
+        let free = |name: &str| parameters.iter().position(|free| free.name == name);
+        let each = table.filter_map(|p| match free(p.name) {
+            Some(k) => Some([fitted[k], parameters[k].lower, parameters[k].upper]),
+            None => Some([self.known_value(effect, p.name)?, 0.0, f64::INFINITY]),
+        });
+        each.collect()
     }
 
     /// Rms of the recorded force.
@@ -433,5 +435,21 @@ mod tests {
         let least = family.terms.iter().find(|term| term.name == "backlash:two-mass").unwrap();
         let least = least.parameters.iter().find(|p| p.name == "b").unwrap().lower;
         assert!(gap(1e9, least).unwrap().2.contains("as narrow as it may be"));
+    }
+
+    #[test]
+    fn what_neither_counts_nor_samples_show_is_none() {
+        let family = family();
+        let count = 12.0f64.sqrt() * family.position_deviation();
+        let gap = |b: f64| said(&family, "backlash:two-mass", &[("k", 1e9), ("b", b)]);
+        assert_eq!(gap(2.1 * count), None);
+        assert!(matches!(gap(1.9 * count), Some(Refusal::NotThatEffect { limit, meaning, .. })
+            if meaning.contains("two counts") && (limit / count - 2.0).abs() < 1e-9));
+        let term = family.terms.iter().find(|term| term.name == "flexible-coupling").unwrap();
+        let most = term.parameters.iter().find(|p| p.name == "f").unwrap().upper;
+        let coupling = |f: f64| said(&family, "flexible-coupling", &[("f", f)]);
+        assert_eq!(coupling(0.9 * most), None);
+        assert!(matches!(coupling(most), Some(Refusal::NotThatEffect { meaning, .. })
+            if meaning.contains("as fast as it may")));
     }
 }
