@@ -104,6 +104,14 @@ fn every_function_is_in_the_list_once_and_works() {
     }
 }
 
+#[test]
+fn a_square_is_a_power_to_the_last_bit() {
+    // Found by a draw: c * c is another number. A compiler that sees the exponent writes that.
+    let c: f64 = 6.112_023_181_922_595;
+    let power = c.powf(std::hint::black_box(2.0));
+    assert_eq!(value("c^2", &[c]).to_bits(), power.to_bits());
+}
+
 proptest! {
     #[test]
     fn no_text_panics(text in "\\PC{0,80}") {
