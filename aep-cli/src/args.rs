@@ -14,6 +14,6 @@ pub use data::{DataArgs, MappingArgs, words};
 pub use effects::{EffectNames, add_files, add_regressors, known, library};
 pub use horizon::{Compared, TimeArgs};
 pub use known::KnownArgs;
-pub use run::{LimitArgs, OutputArgs, RunArgs, with_time_left};
+pub use run::{LimitArgs, OutputArgs, RunArgs};
 pub use series::{SeriesArgs, axis_path};
 pub use shell::{flag, quoted};

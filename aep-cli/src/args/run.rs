@@ -11,6 +11,9 @@ use super::EffectNames;
 use crate::failure::Failure;
 use crate::stop::{self, Watch};
 
+/// Limit of a search where none is given.
+const SEARCH: Duration = Duration::from_mins(1);
+
 /// How a search runs.
 #[derive(clap::Args, Clone, Debug)]
 #[command(next_help_heading = "Running")]
@@ -18,10 +21,11 @@ pub struct RunArgs {
     /// Seed of every random choice; the same seed gives the same result
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Seconds of the search, after which the best so far is told as such; `none` for no limit. A result
-    /// that the limit did not cut is the same on every machine
-    #[arg(long, value_name = "S", default_value = "60", allow_negative_numbers = true, value_parser = limit)]
-    time_limit: Limit,
+    /// Seconds from the start of the command, after which the best so far is told as such; `none` for no limit. Without it
+    /// the search ends after 60 s, however long the file took to read. A result that no limit cut is the same on every
+    /// machine
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = limit)]
+    time_limit: Option<Limit>,
     /// Largest p-value at which an effect is called likely, by 'suggest' and on --validate recordings
     #[arg(long, value_name = "P", default_value = "0.05", allow_negative_numbers = true, value_parser = rate)]
     alpha: f64,
@@ -95,16 +99,23 @@ impl RunArgs {
             most: self.thresholds.most_effects,
             thresholds: self.thresholds.thresholds(),
             stop: Some(stop::flag()),
-            time_limit: self.time_limit.0,
+            time_limit: self.time_limit.map_or(Some(SEARCH), |limit| limit.0),
             ..Settings::default()
         })
     }
-}
 
-/// The settings with what is left of the time limit, which began at `begun`.
-pub fn with_time_left(settings: Settings<'static>, begun: Instant) -> Settings<'static> {
-    let left = settings.time_limit.map(|limit| limit.saturating_sub(begun.elapsed()));
-    Settings { time_limit: left, ..settings }
+    /// The settings with what is left of the time limit: one that was given began with the command, the usual one when the
+    /// recording was `read`.
+    pub fn with_time_left(
+        &self,
+        settings: Settings<'static>,
+        begun: Instant,
+        read: Instant,
+    ) -> Settings<'static> {
+        let begun = if self.time_limit.is_some() { begun } else { read };
+        let left = settings.time_limit.map(|limit| limit.saturating_sub(begun.elapsed()));
+        Settings { time_limit: left, ..settings }
+    }
 }
 
 /// When a command ends early.

@@ -17,7 +17,7 @@ use missing_physics::report::{Combinations, Confirmed, Rung, Verdict};
 
 use crate::steps;
 use crate::app::Global;
-use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs, SeriesArgs, with_time_left};
+use crate::args::{self, EffectNames, KnownArgs, MappingArgs, OutputArgs, RunArgs, SeriesArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading, written};
@@ -116,6 +116,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     if let Some(wanted) = &args.axes {
         return axes::run(args, wanted, global);
     }
+    let begun = Instant::now();
     outputs::check(
         &args.inputs(),
         &[
@@ -151,11 +152,11 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     }
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let begun = Instant::now();
+    let read = Instant::now();
     let known = args.known.known()?;
     let family = Arc::new(steps::family(&loaded.recording, args.bandwidth, &known)?);
     progress.say("fitting the base model");
-    let settings = with_time_left(settings, begun);
+    let settings = args.run.with_time_left(settings, begun, read);
     progress.within(settings.time_limit);
     let mut discovery = discover(&*family, &settings, &mut progress)?;
     let mut more = Vec::new();

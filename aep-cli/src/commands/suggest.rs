@@ -12,7 +12,7 @@ use missing_physics::report::Combinations;
 
 use crate::{outputs, steps};
 use crate::app::Global;
-use crate::args::{self, DataArgs, EffectNames, KnownArgs, OutputArgs, RunArgs, with_time_left};
+use crate::args::{self, DataArgs, EffectNames, KnownArgs, OutputArgs, RunArgs};
 use crate::experiment::{Proposal, propose};
 use crate::failure::Failure;
 use crate::output::{self, Columns, heading};
@@ -57,9 +57,10 @@ Examples:
 
 /// Runs the command.
 pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
-    let read: Vec<PathBuf> = args.data.paths().iter().chain(&args.model).cloned().collect();
+    let begun = Instant::now();
+    let inputs: Vec<PathBuf> = args.data.paths().iter().chain(&args.model).cloned().collect();
     outputs::check(
-        &read,
+        &inputs,
         &[
             ("--experiment", args.experiment.as_deref()),
             ("--json", args.results.json.as_deref()),
@@ -76,7 +77,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     let quiet = global.quiet || args.results.own_stdout();
     let mut progress = Progress::new(quiet);
     progress.say("preparing the motion");
-    let begun = Instant::now();
+    let read = Instant::now();
     let known = args.known.known()?.or(model.known());
     let family = Arc::new(steps::family(&loaded.recording, args.bandwidth, &known)?);
     family.belongs(&model)?;
@@ -84,7 +85,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         steps::needs_plant(&family)?;
     }
     progress.say("fitting the model");
-    let settings = with_time_left(settings, begun);
+    let settings = args.run.with_time_left(settings, begun, read);
     progress.within(settings.time_limit);
     let discovery = suggest(&*family, &settings, &mut progress)?;
     let candidates = discovery.ranking.first().cloned().unwrap_or_default();

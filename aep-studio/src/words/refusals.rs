@@ -8,6 +8,7 @@ pub fn reason(decision: &Decision) -> Option<String> {
     Some(match decision.because.as_ref()? {
         Reason::BestOfSize => format!("the best set of {}", decision.rung),
         Reason::AsGoodWithout => "as good without".to_owned(),
+        Reason::ErrorNoLower => "the prediction error is no lower with it".to_owned(),
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),
         Reason::Usual => "the usual effects in its place".to_owned(),

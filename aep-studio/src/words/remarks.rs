@@ -14,7 +14,7 @@ pub fn remark(remark: &Remark) -> String {
             format!("{} is not named: {}", effects.join(" + "), refusal(why))
         }
         Remark::FoundInPartOnly { effect } => format!(
-            "A search on parts of the recording found {effect} besides; on all of it that gains too little."
+            "A search on parts of the recording found {effect} besides; on all of it that gains too little or lowers no error."
         ),
         Remark::NotTheCause { effects, base, last, lacking, because } => format!(
             "nearest: {} would take the prediction error from {base:.2} to {last:.2} times what the sensors make{}: that \
@@ -27,6 +27,10 @@ pub fn remark(remark: &Remark) -> String {
             "Time ran out: what is said was found on parts that are {} of what was looked at, and was not asked of all of it.",
             percent(*share)
         ),
+        Remark::ToldInBrief => {
+            "Time ran out when the search was done: maps and tests of the residual were left out."
+                .to_owned()
+        }
         Remark::InPieces { samples, looked_at, pieces } => format!(
             "Of {samples} samples {looked_at} were looked at, in {pieces} pieces spread over the recording: what happens \
              only between them was not looked for."

@@ -93,7 +93,7 @@ impl Found {
     }
 
     /// Brings what was found on a part to all of the recording: every rung is refitted there, and what gains too little
-    /// or no more than chance goes. Nothing where it is told to stop before that is done.
+    /// or no more than chance, or lowers no error beside others, goes. Nothing where it is told to stop before that is done.
     pub fn confirmed<F: ModelFamily + ?Sized>(
         mut self,
         family: &F,
@@ -130,13 +130,16 @@ impl Found {
                 let below = last.checked_sub(1).map_or(&self.base, |k| &self.rungs[k]);
                 let costs = self.added.par_iter().enumerate().map(|(k, term)| {
                     let without = if k == last { None } else { without(top, *term) };
-                    comparison.compare(without.as_ref().unwrap_or(below), top)
+                    let without = without.as_ref().unwrap_or(below);
+                    // A single effect with which no error falls has a remark of its own.
+                    (comparison.compare(without, top), last == 0 || top.foretells_more(without))
                 });
-                self.costs = costs.collect();
-                self.p_values = self.costs.iter().map(|c| self.chance.p_value(c.nats)).collect();
+                let (costs, lowers): (Vec<_>, Vec<_>) = costs.unzip();
+                self.p_values = costs.iter().map(|c| self.chance.p_value(c.nats)).collect();
+                self.costs = costs;
                 let each = self.costs.iter().zip(&self.p_values).enumerate();
-                let idle = each.filter(|(_, (cost, p))| {
-                    cost.nats < thresholds.better || **p > thresholds.chance
+                let idle = each.filter(|(k, (cost, p))| {
+                    cost.nats < thresholds.better || **p > thresholds.chance || !lowers[*k]
                 });
                 let least = idle.min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
                 goes = least.map(|(place, _)| (place, None));
@@ -232,11 +235,10 @@ impl Found {
             _ => None,
         });
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model).or(astray);
-        // A likelihood gains by another share of noise, too: what a model explains it foretells.
         // Below what the sensors make there are no shares.
         let beyond = !self.complete && top.scale > ahead.budget();
         let idle = beyond && leaves_most(&self.base, top, ahead.budget());
-        let falls = top.scale < self.base.scale && !idle;
+        let falls = top.foretells_more(&self.base) && !idle;
         if self.complete && falls && no_cause.is_none() {
             return;
         }

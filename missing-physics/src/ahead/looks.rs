@@ -355,7 +355,7 @@ impl<'a> Run<'a> {
         (self.tell)(&Event::Finishing);
         let Sought { reading, found, on_part } = sought;
         let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
-        let report = Report { family, ahead, settings, found, brief: on_part };
+        let report = Report { family, ahead, settings, found, brief: on_part, stop: self.stop };
         let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());
         discovery.seed = self.settings.seed;

@@ -63,6 +63,12 @@ impl Node {
         Self { held, ..self }
     }
 
+    /// Whether its prediction error is below that of another. A likelihood gains by another share of noise, too: what a
+    /// model explains it foretells.
+    pub fn foretells_more(&self, than: &Self) -> bool {
+        self.scale < than.scale
+    }
+
     /// Whether what every model has is held.
     pub fn is_held(&self) -> bool {
         self.held

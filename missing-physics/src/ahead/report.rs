@@ -14,7 +14,7 @@ use crate::family::{Fitted, ModelFamily, detection_limit, sizes};
 use crate::fit::{self, Fit, uncertainty};
 use crate::report::{
     Ambiguity, Budget, Candidate, Decision, DetectionLimit, Discovery, MissingForce, NamedValue,
-    Reason, RegimeShare, Rung, SplitMetrics, Verdict, floor_key,
+    Reason, RegimeShare, Remark, Rung, SplitMetrics, Verdict, floor_key,
 };
 use crate::statistics::split::Split;
 use crate::statistics::weights;
@@ -29,6 +29,8 @@ pub struct Report<'a, F: ModelFamily + ?Sized> {
     pub found: Found,
     /// Whether time is up before a long recording was asked in full: what takes long for people to see is left out.
     pub brief: bool,
+    /// Whether time is up while it is told.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl<F: ModelFamily + ?Sized> Report<'_, F> {
@@ -47,7 +49,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         let verdict = self.verdict(&budget, !ambiguous.is_empty());
         let motion = family.motion();
         let places = |fit: &Fit| {
-            if self.brief {
+            if self.is_brief() {
                 return Vec::new();
             }
             let weights = weights(family.doubt(), &fit.residual);
@@ -102,10 +104,16 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             surrogates: None,
             plots: family.plots(&base_fit.model, &last_fit.model),
         };
-        if !self.brief {
+        if !self.is_brief() {
             diagnosis::attach(family, &base_fit, last_fit, self.settings.seed, &mut discovery);
+        } else if !discovery.stopped {
+            discovery.remarks.push(Remark::ToldInBrief);
         }
         discovery
+    }
+
+    fn is_brief(&self) -> bool {
+        self.brief || (self.stop)()
     }
 
     /// The force that a model lacks, and its shares by regime; where nothing is known of it those of the error.

@@ -34,6 +34,8 @@ pub enum Reason {
     BestOfSize,
     /// The candidate does without an effect, and as well.
     AsGoodWithout,
+    /// The prediction error is no lower with the effect that goes.
+    ErrorNoLower,
     /// Chance gains as much as the effect that goes.
     Chance,
     /// The candidate has an effect in its plain form.

@@ -28,7 +28,8 @@ pub enum Remark {
         /// Why.
         refusal: Refusal,
     },
-    /// A search on parts of the recording found an effect that gains too little on all of it.
+    /// A search on parts of the recording found an effect that gains too little on all of it or lowers no error
+    /// there.
     FoundInPartOnly {
         /// The effect.
         effect: String,
@@ -38,6 +39,8 @@ pub enum Remark {
         /// Share of the recording that was searched.
         share: f64,
     },
+    /// Time ran out, or Ctrl-C came, after the search: maps and tests of the residual were left out.
+    ToldInBrief,
     /// Of a very long recording pieces spread over it were looked at.
     InPieces {
         /// Samples of all of it.

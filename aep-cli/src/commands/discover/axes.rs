@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::{Args, confirmed, friction, save_model, save_series};
 use crate::app::{self, Global};
-use crate::args::{axis_path, library, with_time_left};
+use crate::args::{axis_path, library};
 use crate::failure::Failure;
 use crate::output::{self, Align, Table, dim, heading, written};
 use crate::progress::Progress;
@@ -237,7 +237,7 @@ fn search(args: &Args, axis: &Axis, watch: Watch) -> Result<Searched, Failure> {
     let begun = Instant::now();
     let how = (args.bandwidth, args.known.known()?);
     let family = steps::family(recording, how.0, &how.1)?;
-    let settings = with_time_left(settings, begun);
+    let settings = args.run.with_time_left(settings, begun, begun);
     let mut discovery = discover(&family, &settings, &mut ())?;
     if let Some(others) = axis.others.as_ref().filter(|_| !watch.is_interrupted()) {
         let found = confirmed(&family, &discovery.ladder, others, &how, &settings)?;

@@ -56,24 +56,25 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 costs.push((term, cost, without));
             }
             costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
-            let idle = costs.len() > 1
-                && costs.last().is_some_and(|cost| cost.1.nats < self.thresholds.better);
-            if !idle {
-                return (best, costs);
-            }
-            if let Some((_, cost, without)) = costs.pop() {
-                let size = costs.len();
-                let from = best.clone();
-                self.note(
-                    size,
-                    &without,
-                    &from,
-                    negative(cost),
-                    Outcome::Dropped,
-                    Some(Reason::AsGoodWithout),
-                );
-                best = without;
-            }
+            let better = self.thresholds.better;
+            let goes = costs
+                .iter()
+                .rposition(|(_, cost, without)| cost.nats < better || !best.foretells_more(without))
+                .filter(|_| costs.len() > 1);
+            let Some(goes) = goes else { return (best, costs) };
+            let (_, cost, without) = costs.swap_remove(goes);
+            let because =
+                if cost.nats < better { Reason::AsGoodWithout } else { Reason::ErrorNoLower };
+            let from = best.clone();
+            self.note(
+                costs.len(),
+                &without,
+                &from,
+                negative(cost),
+                Outcome::Dropped,
+                Some(because),
+            );
+            best = without;
         }
     }
 

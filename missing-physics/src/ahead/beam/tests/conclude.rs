@@ -52,6 +52,23 @@ fn an_effect_that_the_others_do_without_goes_and_one_that_they_need_stays() {
 }
 
 #[test]
+fn an_effect_with_which_the_error_does_not_fall_beside_others_goes_whatever_it_gains() {
+    let all = [(WAVE, &[0.05][..]), (BEAT, &[0.05]), (TONE, &[0.01, 5.0])];
+    let plant = Plant::new(3, &all);
+    let without = node(&plant, &all[..2]).scale;
+    for (scale, kept) in [(None, vec![WAVE, BEAT, TONE]), (Some(1.01 * without), vec![WAVE, BEAT])]
+    {
+        let mut search = search(&plant, narrow());
+        let mut best = node(&plant, &all);
+        best.scale = scale.unwrap_or(best.scale);
+        let (last, _) = search.prune(&climb(&plant, Vec::new()), best);
+        assert_eq!(last.effects(&plant), kept, "{:?}", search.decisions);
+        let because = search.decisions.first().and_then(|d| d.because.clone());
+        assert_eq!(because, scale.map(|_| Reason::ErrorNoLower));
+    }
+}
+
+#[test]
 fn a_single_effect_is_not_dropped_for_what_it_gains() {
     // Whether it is enough was asked where its size was.
     let plant = Plant::new(3, &[]);
