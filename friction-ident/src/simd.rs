@@ -96,23 +96,84 @@ pub(crate) fn ln(x: f64) -> f64 {
     exponent * std::f64::consts::LN_2 + 2.0 * f * sum
 }
 
+/// One over the factorials of 0 to 13.
+const OF_EXP: [f64; 14] = {
+    let mut out = [1.0; 14];
+    let mut n = 1;
+    while n < 14 {
+        out[n] = out[n - 1] / n as f64;
+        n += 1;
+    }
+    out
+};
+/// The logarithm of 2 in two parts, the first with so few digits that its multiples are exact.
+const LN_2: (f64, f64) = (0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10);
+/// Where the exponential function leaves the normal numbers.
+const EXPONENTS: (f64, f64) = (-708.0, 709.0);
+
+/// `e^x - 1` of what is left of `x` beside a multiple of ln 2, and that power of 2.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn exp_parts(x: f64) -> (f64, f64) {
+    let x = if x < EXPONENTS.0 { EXPONENTS.0 } else { x };
+    let x = if x > EXPONENTS.1 { EXPONENTS.1 } else { x };
+    let shifted = x * std::f64::consts::LOG2_E + ROUNDING;
+    let whole = shifted - ROUNDING;
+    let r = x - whole * LN_2.0 - whole * LN_2.1;
+    let (c, q) = (&OF_EXP, r * r);
+    // Two chains beside each other.
+    let even = q * (c[2] + q * (c[4] + q * (c[6] + q * (c[8] + q * (c[10] + q * c[12])))));
+    let odd = c[3] + q * (c[5] + q * (c[7] + q * (c[9] + q * (c[11] + q * c[13]))));
+    // The lowest bits of the shifted number are the whole one.
+    let power = f64::from_bits((shifted.to_bits() << 52).wrapping_add(ONE));
+    (even + (r + q * r * odd), power)
+}
+
+/// `e^x` to two units of the last place, at its least 3e-308 and at its most 8e307: the standard one is a call.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(crate) fn exp(x: f64) -> f64 {
+    let (part, power) = exp_parts(x);
+    power + power * part
+}
+
+/// Hyperbolic tangent, to three units of the last place.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(crate) fn tanh(x: f64) -> f64 {
+    let size = x.abs();
+    let size = if size > 20.0 { 20.0 } else { size };
+    let (part, power) = exp_parts(2.0 * size);
+    // e^2x - 1, without a difference of near equals.
+    let grown = power * part + (power - 1.0);
+    (grown / (grown + 2.0)).copysign(x)
+}
+
 /// Added to a number below 2^51 and taken away again it leaves the nearest whole number.
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-/// Ratios of successive terms of the series of sine and cosine, by the square of the angle and without their sign.
-const TERMS: usize = 11;
-const OF_SINE: [f64; TERMS] = ratios(2.0);
-const OF_COSINE: [f64; TERMS] = ratios(1.0);
+/// One over the factorials of 1, 3, 5 .. and of 0, 2, 4 .., with alternating signs: the series of sine and cosine.
+const TERMS: usize = 9;
+const OF_SINE: [f64; TERMS] = series(2.0);
+const OF_COSINE: [f64; TERMS] = series(1.0);
 
-const fn ratios(mut k: f64) -> [f64; TERMS] {
-    let mut out = [0.0; TERMS];
-    let mut n = 0;
+const fn series(mut k: f64) -> [f64; TERMS] {
+    let mut out = [1.0; TERMS];
+    let mut n = 1;
     while n < TERMS {
-        out[n] = 1.0 / (k * (k + 1.0));
+        out[n] = -out[n - 1] / (k * (k + 1.0));
         k += 2.0;
         n += 1;
     }
     out
+}
+
+/// The sum of a series in `q`, its terms in pairs: a chain of half the length.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn summed(c: &[f64; TERMS], q: f64) -> f64 {
+    let (square, pair) = (q * q, |k: usize| c[k] + q * c[k + 1]);
+    pair(0) + square * (pair(2) + square * (pair(4) + square * (pair(6) + square * c[8])))
 }
 
 /// Sine and cosine of so many turns (below 2^49), to 4e-16: the standard ones are calls.
@@ -120,16 +181,18 @@ const fn ratios(mut k: f64) -> [f64; TERMS] {
 #[inline(always)]
 pub(crate) fn sin_cos_of_turns(turns: f64) -> (f64, f64) {
     let nearest = |x: f64| (x + ROUNDING) - ROUNDING;
-    let halves = nearest(2.0 * turns);
-    let odd = halves - 2.0 * nearest(0.5 * halves - 0.25);
-    let sign = 1.0 - 2.0 * odd;
-    // Within a quarter of a turn the series converge fast.
-    let angle = std::f64::consts::TAU * (turns - 0.5 * halves);
+    let quarters = nearest(4.0 * turns);
+    // Within an eighth of a turn the series converge fast.
+    let angle = std::f64::consts::TAU * (turns - 0.25 * quarters);
     let square = angle * angle;
-    let series = |ratios: &[f64; TERMS]| {
-        ratios.iter().rev().fold(1.0, |sum, ratio| 1.0 - square * ratio * sum)
-    };
-    (sign * angle * series(&OF_SINE), sign * series(&OF_COSINE))
+    let (sin, cos) = (angle * summed(&OF_SINE, square), summed(&OF_COSINE, square));
+    // Of the number of quarters the last two binary digits count.
+    let halves = nearest(0.5 * quarters - 0.25);
+    let odd = quarters - 2.0 * halves;
+    let sign = 1.0 - 2.0 * (halves - 2.0 * nearest(0.5 * halves - 0.25));
+    let swapped = odd != 0.0;
+    let (sin, cos) = if swapped { (cos, -sin) } else { (sin, cos) };
+    (sign * sin, sign * cos)
 }
 
 /// Defines functions whose bodies are compiled for every [`InstructionSet`].
@@ -192,6 +255,27 @@ mod tests {
                 "{x}: {found} {exact}"
             );
         }
+    }
+
+    #[test]
+    fn the_exponential_function_is_that_of_the_standard_library() {
+        for k in -40_000..40_000 {
+            let x = f64::from(k) * 0.0173;
+            let (found, exact) = (super::exp(x), x.exp());
+            assert!((found / exact - 1.0).abs() < 5e-16, "{x}: {found:e} {exact:e}");
+        }
+        assert_eq!((super::exp(0.0), super::exp(-0.0)), (1.0, 1.0));
+        assert!(super::exp(-1e9) < 1e-300 && super::exp(1e9) > 1e300 && super::exp(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn the_hyperbolic_tangent_is_that_of_the_standard_library() {
+        for k in -4000..4000 {
+            let x = f64::from(k).powi(3) * 1e-9;
+            let (found, exact) = (super::tanh(x), x.tanh());
+            assert!((found - exact).abs() <= 7e-16 * exact.abs(), "{x}: {found:e} {exact:e}");
+        }
+        assert_eq!((super::tanh(1e300), super::tanh(-1e300)), (1.0, -1.0));
     }
 
     #[test]

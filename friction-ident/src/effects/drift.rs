@@ -2,6 +2,7 @@
 
 use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::{exp, vectorised};
 
 /// `(dF_C + dF_v |v|) exp(-t/tau) s`: what is there at the start beyond the final friction.
 #[derive(Clone, Copy, Debug)]
@@ -56,23 +57,40 @@ impl Effect for Drift {
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
-        for (i, level) in level.iter_mut().enumerate() {
-            *level += p.get(0)[i] * left(p, m, i);
-        }
+        fade_level(p.get(0), p.get(2), m.time, level);
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        for i in 0..out.force.len() {
-            let damping = p.get(1)[i] * left(p, m, i);
-            out.force[i] += damping * m.velocity[i];
-            out.damping[i] += damping;
-        }
+        fade_damping(p.get(1), p.get(2), m.time, m.velocity, out.force, out.damping);
     }
 }
 
-/// What is left of the start in lane `i`.
-fn left(p: Parameters<'_>, m: &Motion<'_>, i: usize) -> f64 {
-    (-m.time[i] / p.get(2)[i]).exp()
+vectorised! {
+    fn fade_level(start: &[f64], tau: &[f64], time: &[f64], level: &mut [f64]) {
+        let n = level.len();
+        let (start, tau, time) = (&start[..n], &tau[..n], &time[..n]);
+        for i in 0..n {
+            level[i] += start[i] * exp(-time[i] / tau[i]);
+        }
+    }
+
+    fn fade_damping(
+        start: &[f64],
+        tau: &[f64],
+        time: &[f64],
+        velocity: &[f64],
+        force: &mut [f64],
+        slope: &mut [f64],
+    ) {
+        let n = force.len();
+        let (start, tau, time) = (&start[..n], &tau[..n], &time[..n]);
+        let (velocity, slope) = (&velocity[..n], &mut slope[..n]);
+        for i in 0..n {
+            let damping = start[i] * exp(-time[i] / tau[i]);
+            force[i] += damping * velocity[i];
+            slope[i] += damping;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::axis::Quantity;
 use crate::effects::CDynamics;
 use crate::effects::Sampled;
 use crate::effects::c_dynamics::PAST;
+use crate::simd::{exp, vectorised};
 
 /// The level sees `v(t - tau_L)` instead of `v(t)`.
 #[derive(Clone, Copy, Debug)]
@@ -163,10 +164,20 @@ impl Memory for Lagged {
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        for (i, state) in state.iter_mut().enumerate().filter(|(i, _)| taken.duration[*i] > 0.0) {
-            // Exact for the mean velocity of the piece.
-            let mean = taken.displacement[i] / taken.duration[i];
-            *state = mean + (*state - mean) * (-taken.duration[i] / p.get(0)[i]).exp();
+        follow(p.get(0), taken.duration, taken.displacement, state);
+    }
+}
+
+vectorised! {
+    /// Exact for the mean velocity of a piece.
+    fn follow(tau: &[f64], duration: &[f64], displacement: &[f64], state: &mut [f64]) {
+        let n = state.len();
+        let (tau, duration, displacement) = (&tau[..n], &duration[..n], &displacement[..n]);
+        for i in 0..n {
+            let goes = duration[i] > 0.0;
+            let mean = displacement[i] / if goes { duration[i] } else { 1.0 };
+            let next = mean + (state[i] - mean) * exp(-duration[i] / tau[i]);
+            state[i] = if goes { next } else { state[i] };
         }
     }
 }

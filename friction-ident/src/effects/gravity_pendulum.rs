@@ -1,7 +1,10 @@
 //! Weight of a pendulum on a rotary axis.
 
+use std::f64::consts::TAU;
+
 use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth, Trials};
 use crate::axis::{Axis, Quantity};
+use crate::simd::{sin_cos_of_turns, vectorised};
 
 /// `M sin(q - q_0)`; `M` is mass times gravity times the distance of the centre of mass.
 #[derive(Clone, Copy, Debug)]
@@ -54,11 +57,16 @@ impl Effect for GravityPendulum {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let (torque, zero) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
-        let (angle, force) = (&m.position[..lanes], &mut out.force[..lanes]);
-        for i in 0..lanes {
-            force[i] += torque[i] * (angle[i] - zero[i]).sin();
+        hang(p.get(0), p.get(1), m.position, out.force);
+    }
+}
+
+vectorised! {
+    fn hang(torque: &[f64], zero: &[f64], angle: &[f64], force: &mut [f64]) {
+        let n = force.len();
+        let (torque, zero, angle) = (&torque[..n], &zero[..n], &angle[..n]);
+        for i in 0..n {
+            force[i] += torque[i] * sin_cos_of_turns((angle[i] - zero[i]) / TAU).0;
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Friction that varies along the stroke: straightness, preload, wear.
 
-use std::f64::consts::PI;
-
 use super::c_law::profile;
+use super::cosines;
 use super::{About, Apart, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 
@@ -131,25 +130,10 @@ impl<const COSINES: usize> Effect for PositionFriction<COSINES> {
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
-        let lanes = level.len();
-        let of = |k: usize| &p.get(k)[..lanes];
-        let amplitude: [&[f64]; COSINES] = std::array::from_fn(of);
-        let (start, end) = (of(COSINES), of(COSINES + 1));
-        let ends = (COSINES == DETAILED).then(|| [of(COSINES + 2), of(COSINES + 3)]);
-        let position = &m.position[..lanes];
-        for i in 0..lanes {
-            let u = ((position[i] - start[i]) / (end[i] - start[i])).clamp(0.0, 1.0);
-            let cos = (PI * u).cos();
-            // Chebyshev: cos (k + 1) a = 2 cos a cos k a - cos (k - 1) a.
-            let (mut before, mut now, mut sum) = (1.0, cos, 0.0);
-            for amplitude in &amplitude {
-                sum += amplitude[i] * now;
-                (before, now) = (now, 2.0 * cos * now - before);
-            }
-            if let Some([slope, bend]) = ends {
-                sum += slope[i] * (u - 0.5) + bend[i] * (u * u - u + 1.0 / 6.0);
-            }
-            level[i] += sum;
+        if COSINES == DETAILED {
+            cosines::add_with_slopes(p, COSINES, m.position, level);
+        } else {
+            cosines::add(p, COSINES, m.position, level);
         }
     }
 }
@@ -158,6 +142,7 @@ impl<const COSINES: usize> Effect for PositionFriction<COSINES> {
 mod tests {
     use super::super::testing::{Point, level};
     use super::*;
+    use std::f64::consts::PI;
 
     /// A stroke from -0.1 to 0.3 m.
     fn fine() -> Vec<f64> {

@@ -6,6 +6,7 @@ use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
 use crate::effects::c_dynamics::PAST;
+use crate::simd::exp;
 
 /// `level += F_r exp(-|distance since the reversal| / l)`.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +97,7 @@ impl Memory for ReversalDecay {
             let going = if rests { m.drive_force[i] } else { m.velocity[i] };
             let turns = going * direction[i] < 0.0;
             let since = if turns { ahead } else { distance[i] + ahead };
-            *level += p.get(0)[i] * (-since / p.get(1)[i]).exp();
+            *level += p.get(0)[i] * exp(-since / p.get(1)[i]);
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::{About, AsFound, CLaw, Effect, Motion, Parameter, Parameters, Refused, Slot, Smooth};
 use crate::axis::Quantity;
+use crate::simd::{tanh, vectorised};
 
 /// `dF tanh(v / v_n)`: viscous with `dF / v_n` at low speed, limited by the shear stress that the
 /// lubricant can bear at high speed.
@@ -54,14 +55,20 @@ impl Effect for ShearThinning {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let (limit, speed) = (&p.get(0)[..lanes], &p.get(1)[..lanes]);
-        let velocity = &m.velocity[..lanes];
-        let (force, slope) = (&mut out.force[..lanes], &mut out.damping[..lanes]);
-        for i in 0..lanes {
-            let part = (velocity[i] / speed[i]).tanh();
+        thin(p.get(0), p.get(1), m.velocity, out.force, out.damping);
+    }
+}
+
+vectorised! {
+    fn thin(limit: &[f64], speed: &[f64], velocity: &[f64], force: &mut [f64], slope: &mut [f64]) {
+        let n = force.len();
+        let (limit, speed) = (&limit[..n], &speed[..n]);
+        let (velocity, slope) = (&velocity[..n], &mut slope[..n]);
+        for i in 0..n {
+            let per_speed = 1.0 / speed[i];
+            let part = tanh(velocity[i] * per_speed);
             force[i] += limit[i] * part;
-            slope[i] += limit[i] * (1.0 - part * part) / speed[i];
+            slope[i] += limit[i] * (1.0 - part * part) * per_speed;
         }
     }
 }

@@ -6,7 +6,7 @@ pub(crate) use free::KNOT_SPEEDS;
 
 use super::{About, Apart, Before, Begin, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
-use crate::simd::vectorised;
+use crate::simd::{exp, ln, vectorised};
 
 /// The shape of the hump over speed, 1 at rest and 0 at high speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,45 +146,90 @@ impl Effect for Stribeck {
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {
         match self.0 {
             Form::Rational => rational(p.get(0), p.get(1), m.level_velocity, m.bond, level),
-            form => {
-                for (i, level) in level.iter_mut().enumerate() {
-                    let share = form.share(p, m.level_velocity, i);
-                    *level += p.get(0)[i] * m.bond[i] * share;
-                }
+            Form::Gaussian => gaussian(p.get(0), p.get(1), m.level_velocity, m.bond, level),
+            Form::Exponential => {
+                exponential(p.get(0), p.get(1), p.get(2), m.level_velocity, m.bond, level);
             }
         }
     }
 
     fn hump(&self, p: Parameters<'_>, level_velocity: &[f64], share: &mut [f64]) -> bool {
-        if self.0 == Form::Rational {
-            rational_share(p.get(1), level_velocity, share);
-            return true;
-        }
-        for (i, share) in share.iter_mut().enumerate() {
-            *share = self.0.share(p, level_velocity, i);
+        match self.0 {
+            Form::Rational => rational_share(p.get(1), level_velocity, share),
+            Form::Gaussian => gaussian_share(p.get(1), level_velocity, share),
+            Form::Exponential => exponential_share(p.get(1), p.get(2), level_velocity, share),
         }
         true
     }
 }
 
 impl Form {
-    /// Share of the hump that is left in lane `i`.
-    fn share(self, p: Parameters<'_>, velocity: &[f64], i: usize) -> f64 {
-        let exponent = if self == Self::Exponential { p.get(2)[i] } else { 1.0 };
-        self.of_ratio(velocity[i] / p.get(1)[i], exponent)
-    }
-
-    /// The same of a speed in Stribeck velocities.
+    /// Share of the hump that is left at a speed in Stribeck velocities.
     fn of_ratio(self, u: f64, exponent: f64) -> f64 {
         match self {
             Self::Rational => 1.0 / (1.0 + u * u),
-            Self::Gaussian => (-u * u).exp(),
-            Self::Exponential => (-u.abs().powf(exponent)).exp(),
+            Self::Gaussian => gaussian_of(u),
+            Self::Exponential => exponential_of(u, exponent),
         }
     }
 }
 
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn gaussian_of(u: f64) -> f64 {
+    exp(-u * u)
+}
+
+/// `exp(-|u|^delta)`.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn exponential_of(u: f64, exponent: f64) -> f64 {
+    // At rest the power is 0 to rounding.
+    let size = u.abs();
+    let size = if size < f64::MIN_POSITIVE { f64::MIN_POSITIVE } else { size };
+    exp(-exp(exponent * ln(size)))
+}
+
 vectorised! {
+    fn gaussian_share(speed: &[f64], velocity: &[f64], share: &mut [f64]) {
+        for ((share, speed), velocity) in share.iter_mut().zip(speed).zip(velocity) {
+            *share = gaussian_of(velocity / speed);
+        }
+    }
+
+    fn gaussian(height: &[f64], speed: &[f64], velocity: &[f64], bond: &[f64], level: &mut [f64]) {
+        let n = level.len();
+        let (height, speed) = (&height[..n], &speed[..n]);
+        let (velocity, bond) = (&velocity[..n], &bond[..n]);
+        for i in 0..n {
+            level[i] += height[i] * bond[i] * gaussian_of(velocity[i] / speed[i]);
+        }
+    }
+
+    fn exponential_share(speed: &[f64], exponent: &[f64], velocity: &[f64], share: &mut [f64]) {
+        let n = share.len();
+        let (speed, exponent, velocity) = (&speed[..n], &exponent[..n], &velocity[..n]);
+        for i in 0..n {
+            share[i] = exponential_of(velocity[i] / speed[i], exponent[i]);
+        }
+    }
+
+    fn exponential(
+        height: &[f64],
+        speed: &[f64],
+        exponent: &[f64],
+        velocity: &[f64],
+        bond: &[f64],
+        level: &mut [f64],
+    ) {
+        let n = level.len();
+        let (height, speed, exponent) = (&height[..n], &speed[..n], &exponent[..n]);
+        let (velocity, bond) = (&velocity[..n], &bond[..n]);
+        for i in 0..n {
+            level[i] += height[i] * bond[i] * exponential_of(velocity[i] / speed[i], exponent[i]);
+        }
+    }
+
     fn rational_share(speed: &[f64], velocity: &[f64], share: &mut [f64]) {
         for ((share, speed), velocity) in share.iter_mut().zip(speed).zip(velocity) {
             let square = speed * speed;

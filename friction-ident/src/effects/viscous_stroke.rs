@@ -1,8 +1,7 @@
 //! Viscous friction that varies along the stroke: lubricant that is not spread evenly, a screw that is warm in the middle.
 
-use std::f64::consts::PI;
-
 use super::c_law::profile;
+use super::cosines;
 use super::{About, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 
@@ -55,24 +54,7 @@ impl Effect for ViscousStroke {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let lanes = out.force.len();
-        let of = |k: usize| &p.get(k)[..lanes];
-        let amplitude: [&[f64]; COSINES] = std::array::from_fn(of);
-        let (start, end) = (of(COSINES), of(COSINES + 1));
-        let (position, velocity) = (&m.position[..lanes], &m.velocity[..lanes]);
-        for (i, (force, damping)) in out.force.iter_mut().zip(&mut *out.damping).enumerate() {
-            let u = ((position[i] - start[i]) / (end[i] - start[i])).clamp(0.0, 1.0);
-            let cos = (PI * u).cos();
-            // Chebyshev: cos (k + 1) a = 2 cos a cos k a - cos (k - 1) a.
-            let (mut before, mut now, mut sum) = (1.0, cos, 0.0);
-            for amplitude in &amplitude {
-                sum += amplitude[i] * now;
-                (before, now) = (now, 2.0 * cos * now - before);
-            }
-            *force += sum * velocity[i];
-            // Where it takes away from the damping of the others, their sum still counts.
-            *damping += sum;
-        }
+        cosines::damp(p, COSINES, m.position, m.velocity, out.force, out.damping);
     }
 }
 
@@ -80,6 +62,7 @@ impl Effect for ViscousStroke {
 mod tests {
     use super::super::testing::{Point, along_and_simulated, smooth};
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn it_is_the_velocity_times_a_sum_of_cosines_over_the_stroke_and_level_beyond() {

@@ -10,11 +10,13 @@
 //! ladder of such forces is held ready, and each model is judged at the one that suits it best; a second
 //! ladder trusts the model while the axis is at rest, where friction holds whatever else acts.
 
+mod follow;
 mod gain;
 mod missing;
 mod noise;
 mod response;
 mod stale;
+mod strips;
 mod surrogate;
 
 use std::ops::Range;
@@ -27,10 +29,9 @@ use rayon::prelude::*;
 pub use noise::Noise;
 pub use response::Wave;
 
-use crate::effects::Slot;
 use crate::model::Model;
-use crate::simulator::{Input, Plants, SimulationError, Start};
 use gain::{Gain, gains};
+use strips::{Strip, teams};
 
 /// Longest step of the simulation, s, and that with a second body.
 const STEP: f64 = 1.25e-3;
@@ -52,7 +53,7 @@ const LIMIT: f64 = 1e4;
 /// Length of the pieces of a thinned recording, s.
 const PIECE: f64 = 1.0;
 /// Fewest and most plants that advance together.
-const LANES: (usize, usize) = (8, 32);
+const LANES: (usize, usize) = (8, 40);
 /// Why samples do not count.
 const REPEATED: &str = "repeats the sample before it while the axis moves";
 const UNSETTLED: &str = "start of a piece";
@@ -74,6 +75,8 @@ pub struct Predictor {
     stale: Vec<bool>,
     /// Samples that count, in order.
     counted: Vec<usize>,
+    /// Strips that are simulated side by side.
+    teams: Vec<Vec<Strip>>,
     /// Process noise of the ladder, N.
     ladder: Vec<f64>,
     /// One for each process noise, made when it is first asked for: of a long recording that is searched in part few are.
@@ -82,16 +85,6 @@ pub struct Predictor {
     plant: (f64, f64),
     fed_back: f64,
     rest_speed: f64,
-}
-
-/// What happens to a model at a sample.
-struct Step {
-    /// Measured less shown position, m or rad.
-    error: f64,
-    /// What is added to position and velocity after it.
-    fed: (f64, f64),
-    /// Whether the model rests at its end.
-    rests: bool,
 }
 
 impl Predictor {
@@ -111,6 +104,7 @@ impl Predictor {
             hold: recording.hold(),
             segments: recording.segments().to_vec(),
             counted: Vec::new(),
+            teams: Vec::new(),
             ladder,
             gains: Vec::new(),
             plant: (mass, damping),
@@ -121,14 +115,16 @@ impl Predictor {
             noise,
             stale,
         };
-        predictor.counted = predictor.countable();
+        predictor.arrange();
         predictor.tune(mass, damping);
         (!predictor.counted.is_empty()).then_some(predictor)
     }
 
-    fn countable(&self) -> Vec<usize> {
+    /// Finds which samples count, and what is simulated side by side.
+    fn arrange(&mut self) {
         let settled = self.segments.iter().flat_map(|s| self.settled(s));
-        settled.filter(|k| !self.stale[*k]).collect()
+        self.counted = settled.filter(|k| !self.stale[*k]).collect();
+        self.teams = teams(&self.segments, &self.time, |k| self.speed_around(k));
     }
 
     /// Samples of a piece from which on its start no longer matters.
@@ -187,12 +183,13 @@ impl Predictor {
             force: picked(&self.force, &parts),
             stale: picked(&self.stale, &parts),
             counted: Vec::new(),
+            teams: Vec::new(),
             gains: Vec::new(),
             ladder: self.ladder.clone(),
             noise: self.noise,
             ..*self
         };
-        thinned.counted = thinned.countable();
+        thinned.arrange();
         thinned.tune(self.plant.0, self.plant.1);
         Some(thinned)
     }
@@ -247,18 +244,36 @@ impl Predictor {
     /// rad, each brought to the size that it would have at a typical sample.
     pub fn errors(&self, models: &[(Model, usize)]) -> Vec<Vec<f64>> {
         let threads = rayon::current_num_threads().max(1);
-        let lanes = models.len().div_ceil(threads).next_multiple_of(4).clamp(LANES.0, LANES.1);
-        let batches: Vec<Vec<Vec<f64>>> =
-            models.par_chunks(lanes).map(|batch| self.batch(batch)).collect();
-        batches.into_iter().flatten().collect()
+        let beside = self.teams.iter().map(Vec::len).max().unwrap_or(1);
+        let each = models.len().div_ceil(threads);
+        let each = each.clamp(LANES.0.div_ceil(beside), LANES.1.div_ceil(beside));
+        let mut place = vec![None; self.time.len()];
+        self.counted.iter().enumerate().for_each(|(k, n)| place[*n] = Some(k));
+        let jobs: Vec<_> =
+            models.chunks(each).flat_map(|m| self.teams.iter().map(move |t| (m, t))).collect();
+        let done: Vec<Vec<Vec<f64>>> =
+            jobs.par_iter().map(|(models, team)| self.batch(models, team, &place)).collect();
+        // Team by team, in the order of time.
+        let mut errors = Vec::with_capacity(models.len());
+        for of_models in done.chunks(self.teams.len().max(1)) {
+            let count = of_models.first().map_or(0, Vec::len);
+            errors.extend((0..count).map(|i| {
+                of_models.iter().flat_map(|team| &team[i]).copied().collect::<Vec<f64>>()
+            }));
+        }
+        errors
     }
 
     /// The position that a model shows at each sample of the recording, one sample ahead; no number at the first of a
     /// piece, or anywhere where the model cannot be simulated.
     pub fn shown(&self, model: &Model, setting: usize) -> Vec<f64> {
         let mut shown = vec![f64::NAN; self.time.len()];
-        let seen = self.follow(&[(model.clone(), setting)], |n, _, step| {
-            shown[n] = self.position[n] - step.error;
+        let trial = [(model.clone(), setting)];
+        let error = |n: usize, shown: f64| self.position[n] - shown;
+        let seen = self.teams.iter().try_for_each(|team| {
+            self.side_by_side(team, &trial, error, |n, _, step| {
+                shown[n] = self.position[n] - step.error;
+            })
         });
         if seen.is_err() {
             shown.fill(f64::NAN);
@@ -274,20 +289,28 @@ impl Predictor {
         left_out
     }
 
-    fn batch(&self, trials: &[(Model, usize)]) -> Vec<Vec<f64>> {
+    /// Errors of models at the samples of a team that count; `place` is that of each sample among all that do.
+    fn batch(
+        &self,
+        trials: &[(Model, usize)],
+        team: &[Strip],
+        place: &[Option<usize>],
+    ) -> Vec<Vec<f64>> {
         let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
-        let mut errors = vec![Vec::with_capacity(self.counted.len()); trials.len()];
-        let mut counted = vec![false; self.time.len()];
-        self.counted.iter().for_each(|k| counted[*k] = true);
-        let plants = self.follow(trials, |n, i, step| {
-            if counted[n] {
+        let told = team.iter().flat_map(|strip| place[strip.tells.clone()].iter().flatten());
+        let (first, count) = (told.clone().next().copied().unwrap_or(0), told.count());
+        let mut errors = vec![vec![f64::NAN; count]; trials.len()];
+        let error = |n: usize, shown: f64| self.position[n] - shown;
+        let plants = self.side_by_side(team, trials, error, |n, i, step| {
+            if let Some(place) = place[n] {
                 // A model that runs away errs as much as can be, whatever it says.
                 let (scaled, cut) = (step.error * gain[i].relative[n], LIMIT * gain[i].expected);
-                errors[i].push(if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut });
+                let error = if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut };
+                errors[i][place - first] = error;
             }
         });
         if plants.is_err() {
-            return vec![vec![f64::NAN; self.counted.len()]; trials.len()];
+            errors.iter_mut().for_each(|errors| errors.fill(f64::NAN));
         }
         errors
     }
@@ -297,82 +320,6 @@ impl Predictor {
         self.gain_of(setting % self.ladder.len())
     }
 
-    /// Runs models of the same effects along the recording, each at its own setting; tells what happens at every
-    /// sample but the first of a piece: its number, that of the model, and the step.
-    fn follow(
-        &self,
-        trials: &[(Model, usize)],
-        see: impl FnMut(usize, usize, &Step),
-    ) -> Result<(), SimulationError> {
-        self.follow_errors(trials, |n, shown| self.position[n] - shown, see)
-    }
-
-    /// The same with errors of the caller's: from the number of the sample and the position that a model shows there.
-    fn follow_errors(
-        &self,
-        trials: &[(Model, usize)],
-        mut error: impl FnMut(usize, f64) -> f64,
-        mut see: impl FnMut(usize, usize, &Step),
-    ) -> Result<(), SimulationError> {
-        let lanes = trials.len();
-        let mut models: Vec<Model> = trials.iter().map(|(model, _)| model.clone()).collect();
-        let two = models[0].acts_on(Slot::Attached);
-        if two && lanes > 1 {
-            // A vector that is not full costs as much as one that is, plants beside it far more.
-            models.resize(lanes.next_multiple_of(VECTOR), trials[lanes - 1].0.clone());
-        }
-        let mut plants = Plants::new(&models)?;
-        let rungs = self.ladder.len();
-        let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
-        let at_rest: Vec<&Gain> =
-            trials.iter().map(|(_, s)| self.gain_of(if *s < rungs { *s } else { 0 })).collect();
-        let step = if two { STEP_OF_TWO } else { STEP };
-        let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
-        let all = models.len();
-        let (mut length, mut command) = (vec![0.0; all], vec![0.0; all]);
-        let (mut dx, mut dv) = (vec![0.0; all], vec![0.0; all]);
-        for segment in &self.segments {
-            let start = self.start(segment);
-            (0..all).for_each(|i| plants.start(i, &start));
-            for k in segment.start..segment.end - 1 {
-                let (steps, duration) = input.steps(k);
-                length.fill(duration);
-                for j in 0..steps {
-                    command.fill(input.mean(k, j, steps));
-                    plants.step(&length, &command);
-                }
-                let n = k + 1;
-                let (shown, velocity) = (plants.shown(), plants.velocity());
-                for i in 0..lanes {
-                    let error = error(n, shown[i]);
-                    let rests = velocity[i].abs() < self.rest_speed;
-                    let g = if rests { at_rest[i] } else { gain[i] };
-                    let finite = error.is_finite();
-                    let fed = if finite { error.clamp(-self.fed_back, self.fed_back) } else { 0.0 };
-                    dx[i] = g.position[n] * fed;
-                    dv[i] = g.velocity[n] * fed;
-                    see(n, i, &Step { error, fed: (dx[i], dv[i]), rests });
-                }
-                for i in lanes..all {
-                    (dx[i], dv[i]) = (dx[lanes - 1], dv[lanes - 1]);
-                }
-                plants.correct(&dx, &dv);
-            }
-        }
-        Ok(())
-    }
-
-    /// Where a piece starts: at rest, unless the first samples move by more than their noise.
-    fn start(&self, segment: &Range<usize>) -> Start {
-        let first = segment.start;
-        let next = (first + 4).min(segment.end - 1);
-        let moved = self.position[next] - self.position[first];
-        let moves = moved.abs() > 6.0 * self.noise.position;
-        let duration = (self.time[next] - self.time[first]).max(f64::MIN_POSITIVE);
-        let velocity = if moves { moved / duration } else { 0.0 };
-        let command = self.force[first];
-        Start { time: self.time[first], command, ..Start::at(self.position[first], velocity) }
-    }
 }
 
 /// The values of these parts, one after the other.

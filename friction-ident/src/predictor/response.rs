@@ -4,13 +4,13 @@
 //! that is corrected by the gain; where the axis rests, friction takes the force. That is exact enough to
 //! choose among hundreds of periods of a ripple, at a hundredth of the cost.
 
-use std::f64::consts::TAU;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::Predictor;
-use super::gain::Motion;
+use super::gain::{Gain, Motion};
+use crate::simd::{sin_cos_of_turns, vectorised};
 
 /// Samples on either side over which an axis must have moved not to be at rest.
 const AROUND: usize = 4;
@@ -28,6 +28,78 @@ pub enum Wave {
     ForceOverTime,
 }
 
+/// Periods that are looked at side by side.
+const BESIDE: usize = 8;
+
+/// What the responses to all periods have in common.
+struct Way<'a> {
+    wave: Wave,
+    /// Position or time of the samples.
+    along: &'a [f64],
+    segments: &'a [Range<usize>],
+    moving: &'a [bool],
+    /// What the plant does between a sample and the one before.
+    motion: &'a [Motion],
+    /// Whether a sample counts, and how many do.
+    counts: &'a [bool],
+    counted: usize,
+    gain: &'a Gain,
+}
+
+vectorised! {
+    fn respond(way: &Way<'_>, periods: &[f64; BESIDE], out: &mut Vec<[Vec<f32>; 2]>) {
+        let none = || Vec::with_capacity(way.counted);
+        let mut errors: [[Vec<f32>; 2]; BESIDE] = std::array::from_fn(|_| [none(), none()]);
+        let per = periods.map(|period| 1.0 / period);
+        for segment in way.segments {
+            // Position and velocity that the sine and the cosine have made so far.
+            let (mut x, mut v) = ([[0.0; BESIDE]; 2], [[0.0; BESIDE]; 2]);
+            for k in segment.start + 1..segment.end {
+                let (moves, m) = (way.moving[k], &way.motion[k]);
+                let acts = way.wave == Wave::Sensor || moves;
+                let at = match way.wave {
+                    Wave::Sensor => way.along[k],
+                    Wave::Force | Wave::ForceOverTime => 0.5 * (way.along[k - 1] + way.along[k]),
+                };
+                let mut swing = [[0.0; BESIDE]; 2];
+                if acts {
+                    for i in 0..BESIDE {
+                        let (sin, cos) = sin_cos_of_turns(at * per[i]);
+                        (swing[0][i], swing[1][i]) = (sin, cos);
+                    }
+                }
+                let (position, velocity) = (way.gain.position[k], way.gain.velocity[k]);
+                let mut seen = [[0.0; BESIDE]; 2];
+                for j in 0..2 {
+                    for i in 0..BESIDE {
+                        let (force, shown) = match way.wave {
+                            Wave::Sensor => (0.0, swing[j][i]),
+                            Wave::Force | Wave::ForceOverTime => (-swing[j][i], 0.0),
+                        };
+                        if moves {
+                            x[j][i] += m.way * v[j][i] + m.moved * force;
+                            v[j][i] = m.decay * v[j][i] + m.gained * force;
+                        } else {
+                            v[j][i] = 0.0;
+                        }
+                        let error = -(x[j][i] + shown);
+                        x[j][i] += position * error;
+                        v[j][i] += velocity * error;
+                        seen[j][i] = error * way.gain.relative[k];
+                    }
+                }
+                if way.counts[k] {
+                    for (i, errors) in errors.iter_mut().enumerate() {
+                        errors[0].push(seen[0][i] as f32);
+                        errors[1].push(seen[1][i] as f32);
+                    }
+                }
+            }
+        }
+        out.extend(errors);
+    }
+}
+
 impl Predictor {
     /// Changes of the prediction errors by `sin(2 pi x/period)` and `cos(2 pi x/period)`, or of time in the place of
     /// `x`, of 1 N (N m) against the motion or of 1 m (rad), for each period.
@@ -36,56 +108,27 @@ impl Predictor {
         let motion: Vec<Motion> = (0..self.time.len())
             .map(|k| Motion::over(self.time[k] - self.time[k.saturating_sub(1)], self.plant))
             .collect();
-        let one = |period: &f64| self.response(setting, wave, TAU / period, &moving, &motion);
-        periods.par_iter().map(one).collect()
-    }
-
-    fn response(
-        &self,
-        setting: usize,
-        wave: Wave,
-        wavenumber: f64,
-        moving: &[bool],
-        motion: &[Motion],
-    ) -> [Vec<f32>; 2] {
-        let gain = self.gain(setting);
-        let mut errors = [0, 1].map(|_| Vec::with_capacity(self.counted.len()));
-        let mut counted = self.counted.iter().copied().peekable();
-        for segment in &self.segments {
-            let (mut x, mut v) = ([0.0; 2], [0.0; 2]);
-            for k in segment.start + 1..segment.end {
-                let counts = counted.next_if_eq(&k).is_some();
-                let along = if wave == Wave::ForceOverTime { &self.time } else { &self.position };
-                let (before, now) = (along[k - 1], along[k]);
-                let (force, shown) = match wave {
-                    Wave::Force | Wave::ForceOverTime if moving[k] => {
-                        let (sin, cos) = (wavenumber * 0.5 * (before + now)).sin_cos();
-                        ([-sin, -cos], [0.0; 2])
-                    }
-                    Wave::Force | Wave::ForceOverTime => ([0.0; 2], [0.0; 2]),
-                    Wave::Sensor => {
-                        let (sin, cos) = (wavenumber * now).sin_cos();
-                        ([0.0; 2], [sin, cos])
-                    }
-                };
-                let m = &motion[k];
-                for j in 0..2 {
-                    if moving[k] {
-                        x[j] += m.way * v[j] + m.moved * force[j];
-                        v[j] = m.decay * v[j] + m.gained * force[j];
-                    } else {
-                        v[j] = 0.0;
-                    }
-                    let error = -(x[j] + shown[j]);
-                    x[j] += gain.position[k] * error;
-                    v[j] += gain.velocity[k] * error;
-                    if counts {
-                        errors[j].push((error * gain.relative[k]) as f32);
-                    }
-                }
-            }
-        }
-        errors
+        let mut counts = vec![false; self.time.len()];
+        self.counted.iter().for_each(|k| counts[*k] = true);
+        let way = Way {
+            wave,
+            along: if wave == Wave::ForceOverTime { &self.time } else { &self.position },
+            segments: &self.segments,
+            moving: &moving,
+            motion: &motion,
+            counts: &counts,
+            counted: self.counted.len(),
+            gain: self.gain(setting),
+        };
+        let together = |periods: &[f64]| {
+            let mut beside = [1.0; BESIDE];
+            beside[..periods.len()].copy_from_slice(periods);
+            let mut errors = Vec::new();
+            respond(&way, &beside, &mut errors);
+            errors.truncate(periods.len());
+            errors
+        };
+        periods.par_chunks(BESIDE).flat_map_iter(together).collect()
     }
 
     /// Whether the axis moves, at each sample that counts.

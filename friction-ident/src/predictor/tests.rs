@@ -5,7 +5,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::*;
 use crate::axis::Axis;
-use crate::simulator::simulate;
+use crate::simulator::{Input, Start, simulate};
 
 pub(super) const MASS: f64 = 33.0;
 pub(super) const DAMPING: f64 = 200.0;

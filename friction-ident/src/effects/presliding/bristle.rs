@@ -7,7 +7,7 @@ use super::{
 use crate::effects::CDynamics;
 use crate::effects::Leg;
 use crate::effects::c_dynamics::LIMITED;
-use crate::simd::limited;
+use crate::simd::{exp, limited, vectorised};
 
 /// `f' = k_t v (1 - f s / level)`, with `LuGre` and a damping `sigma_1 z'` of the bristle.
 ///
@@ -104,12 +104,49 @@ impl Bristle {
     }
 }
 
+vectorised! {
+    fn respond(
+        stiffness: &[f64],
+        damping: &[f64],
+        damped: f64,
+        duration: &[f64],
+        moved: &[f64],
+        level: &[f64],
+        state: &[f64],
+        force: &mut [f64],
+        slope: &mut [f64],
+    ) {
+        let n = state.len();
+        let (stiffness, damping, duration) = (&stiffness[..n], &damping[..n], &duration[..n]);
+        let (moved, level) = (&moved[..n], &level[..n]);
+        let (force, slope) = (&mut force[..n], &mut slope[..n]);
+        for i in 0..n {
+            let held = limited(state[i], level[i]);
+            let (end, bends) = bent(held, moved[i], stiffness[i], level[i]);
+            // The bristle's own velocity is its deflection over the step.
+            let rate = damped * damping[i] / (stiffness[i] * duration[i].max(f64::MIN_POSITIVE));
+            force[i] += 0.5 * (held + end) + rate * (end - held);
+            slope[i] += (0.5 + rate) * bends;
+        }
+    }
+
+    fn commit(stiffness: &[f64], moved: &[f64], level: &[f64], state: &mut [f64]) {
+        let n = state.len();
+        let (stiffness, moved, level) = (&stiffness[..n], &moved[..n], &level[..n]);
+        for i in 0..n {
+            state[i] = bent(state[i], moved[i], stiffness[i], level[i]).0;
+        }
+    }
+}
+
 /// Force after a displacement, exact at constant level, and its slope.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn bent(held: f64, moved: f64, stiffness: f64, level: f64) -> (f64, f64) {
     let level = level.max(f64::MIN_POSITIVE);
     let held = limited(held, level);
     let limit = level.copysign(moved);
-    let left = (-stiffness * moved.abs() / level).exp();
+    let left = exp(-stiffness * moved.abs() / level);
     (limit + (held - limit) * left, stiffness * (1.0 - held * moved.signum() / level) * left)
 }
 
@@ -123,21 +160,13 @@ impl Element for Bristle {
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        for (i, state) in state.iter().enumerate() {
-            let (stiffness, moved) = (p.get(0)[i], step.displacement[i]);
-            let held = limited(*state, step.level[i]);
-            let (end, slope) = bent(held, moved, stiffness, step.level[i]);
-            // The bristle's own velocity is its deflection over the step.
-            let rate = self.damping(p, i) / (stiffness * step.duration[i].max(f64::MIN_POSITIVE));
-            out.force[i] += 0.5 * (held + end) + rate * (end - held);
-            out.stiffness[i] += (0.5 + rate) * slope;
-        }
+        let (damping, damped) = if self.damped { (p.get(1), 1.0) } else { (p.get(0), 0.0) };
+        let (time, moved, level) = (step.duration, step.displacement, step.level);
+        respond(p.get(0), damping, damped, time, moved, level, state, out.force, out.stiffness);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
-        for (i, state) in state.iter_mut().enumerate() {
-            *state = bent(*state, step.displacement[i], p.get(0)[i], step.level[i]).0;
-        }
+        commit(p.get(0), step.displacement, step.level, state);
     }
 
     /// Bent by the share that does not slide already. Fed through the contact as if the mass had moved, noise of

@@ -10,6 +10,9 @@ use crate::simd::{limited, vectorised};
 const ELEMENTS: usize = 5;
 /// Breakaway distances of the elements in units of `d`.
 const REACH: [f64; ELEMENTS] = [0.08, 0.2, 0.45, 0.9, 1.7];
+/// One over each.
+const PER_REACH: [f64; ELEMENTS] =
+    [1.0 / REACH[0], 1.0 / REACH[1], 1.0 / REACH[2], 1.0 / REACH[3], 1.0 / REACH[4]];
 /// Utilisation from which the contact counts as sliding.
 const BROKEN: f64 = 0.999;
 /// Place of the damping among the parameters.
@@ -91,20 +94,14 @@ impl Element for Free {
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        let n = out.force.len();
-        for e in 0..ELEMENTS {
-            let (used, share) = (&state[e * n..], &state[(ELEMENTS + e) * n..]);
-            let (distance, damping) = (p.get(0), p.get(DAMPING));
-            let (time, moved, level) = (step.duration, step.displacement, step.level);
-            let (force, slope) = (&mut *out.force, &mut *out.stiffness);
-            respond(REACH[e], distance, damping, time, moved, level, used, share, force, slope);
-        }
+        let (time, moved, level) = (step.duration, step.displacement, step.level);
+        respond(p.get(0), p.get(DAMPING), time, moved, level, state, out.force, out.stiffness);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
         let n = step.level.len();
-        for (reach, used) in REACH.iter().zip(state.chunks_mut(n)) {
-            commit(*reach, p.get(0), step.displacement, used);
+        for (per_reach, used) in PER_REACH.iter().zip(state.chunks_mut(n)) {
+            commit(*per_reach, p.get(0), step.displacement, used);
         }
     }
 
@@ -130,9 +127,9 @@ impl Element for Free {
         for (k, leg) in path.iter().enumerate() {
             force[k] = 0.0;
             for e in 0..ELEMENTS {
-                let distance = p[0] * REACH[e];
-                let (open, _) = opened(used[e], leg.displacement, distance);
-                used[e] = moved_to(used[e], leg.displacement, distance);
+                let (reach, per_reach) = (p[0] * REACH[e], PER_REACH[e] / p[0]);
+                let (open, _) = opened(used[e], leg.displacement, reach, per_reach);
+                used[e] = limited(used[e] + leg.displacement * per_reach, 1.0);
                 force[k] += leg.level * share[e] * used[e];
                 if leg.duration > 0.0 {
                     damping[k] += p[DAMPING] * share[e] * open / leg.duration;
@@ -146,56 +143,57 @@ impl Element for Free {
     }
 }
 
-/// Utilisation after a displacement.
+/// Integral of `1 - z s` over a displacement, with its sign, and the slope of that, for a breakaway distance and one over it.
 #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
-fn moved_to(used: f64, moved: f64, distance: f64) -> f64 {
-    limited(used + moved / distance, 1.0)
-}
-
-/// Integral of `1 - z s` over a displacement, with its sign, and the slope of that.
-#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
-#[inline(always)]
-fn opened(used: f64, moved: f64, distance: f64) -> (f64, f64) {
+fn opened(used: f64, moved: f64, reach: f64, per_reach: f64) -> (f64, f64) {
     let left = 1.0 - if moved < 0.0 { -used } else { used };
     // What is gone of the way until it slides.
-    let way = moved.abs().min(left * distance);
-    let bent = way / distance;
+    let way = moved.abs().min(left * reach);
+    let bent = way * per_reach;
     ((way * (left - 0.5 * bent)).copysign(moved), left - bent)
 }
 
 vectorised! {
     fn respond(
-        reach: f64,
         distance: &[f64],
         damping: &[f64],
         duration: &[f64],
         moved: &[f64],
         level: &[f64],
-        used: &[f64],
-        share: &[f64],
+        state: &[f64],
         force: &mut [f64],
         slope: &mut [f64],
     ) {
         let n = force.len();
         let (distance, damping, duration) = (&distance[..n], &damping[..n], &duration[..n]);
         let (moved, level) = (&moved[..n], &level[..n]);
-        let (used, share, slope) = (&used[..n], &share[..n], &mut slope[..n]);
+        let slope = &mut slope[..n];
+        let used: [&[f64]; ELEMENTS] = std::array::from_fn(|e| &state[e * n..][..n]);
+        let share: [&[f64]; ELEMENTS] = std::array::from_fn(|e| &state[(ELEMENTS + e) * n..][..n]);
         for i in 0..n {
-            let reach = reach * distance[i];
-            let free = used[i] + moved[i] / reach;
-            let end = limited(free, 1.0);
-            let (open, rate) = opened(used[i], moved[i], reach);
+            // Two divisions for all elements.
+            let per_distance = 1.0 / distance[i];
             let damping = damping[i] / duration[i].max(f64::MIN_POSITIVE);
-            force[i] += share[i] * (0.5 * level[i] * (used[i] + end) + damping * open);
-            let elastic = if free == end { 0.5 * level[i] / reach } else { 0.0 };
-            slope[i] += share[i] * (elastic + damping * rate);
+            let (mut sum, mut bends) = (0.0, 0.0);
+            for e in 0..ELEMENTS {
+                let (reach, per_reach) = (REACH[e] * distance[i], PER_REACH[e] * per_distance);
+                let (used, share) = (used[e][i], share[e][i]);
+                let free = used + moved[i] * per_reach;
+                let end = limited(free, 1.0);
+                let (open, rate) = opened(used, moved[i], reach, per_reach);
+                sum += share * (0.5 * level[i] * (used + end) + damping * open);
+                let elastic = if free == end { 0.5 * level[i] * per_reach } else { 0.0 };
+                bends += share * (elastic + damping * rate);
+            }
+            force[i] += sum;
+            slope[i] += bends;
         }
     }
 
-    fn commit(reach: f64, distance: &[f64], moved: &[f64], used: &mut [f64]) {
+    fn commit(per_reach: f64, distance: &[f64], moved: &[f64], used: &mut [f64]) {
         for ((used, moved), distance) in used.iter_mut().zip(moved).zip(distance) {
-            *used = moved_to(*used, *moved, reach * distance);
+            *used = limited(*used + moved * (per_reach * (1.0 / distance)), 1.0);
         }
     }
 }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::effects::CDynamics;
 use crate::effects::c_dynamics::LIMITED;
-use crate::simd::limited;
+use crate::simd::{limited, vectorised};
 
 /// Number of elements.
 const ELEMENTS: usize = 4;
@@ -93,15 +93,62 @@ impl Effect for MaxwellSlip {
 }
 
 /// Stiffnesses of the elements.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
 fn stiffnesses(total: f64, spread: f64) -> [f64; ELEMENTS] {
-    let mut share = 1.0;
-    let shares = std::array::from_fn(|_| {
-        let now = share;
-        share /= spread;
-        now
-    });
-    let sum: f64 = shares.iter().sum();
-    shares.map(|share| total * share / sum)
+    let per = 1.0 / spread;
+    let first = total / (1.0 + per * (1.0 + per * (1.0 + per)));
+    let second = first * per;
+    let third = second * per;
+    [first, second, third, third * per]
+}
+
+vectorised! {
+    fn respond(
+        total: &[f64],
+        spread: &[f64],
+        moved: &[f64],
+        level: &[f64],
+        state: &[f64],
+        force: &mut [f64],
+        slope: &mut [f64],
+    ) {
+        let n = force.len();
+        let (total, spread, moved) = (&total[..n], &spread[..n], &moved[..n]);
+        let (level, slope) = (&level[..n], &mut slope[..n]);
+        let state: [&[f64]; ELEMENTS] = std::array::from_fn(|e| &state[e * n..][..n]);
+        for i in 0..n {
+            let cap = level[i] / ELEMENTS as f64;
+            let stiffness = stiffnesses(total[i], spread[i]);
+            let (mut sum, mut bends) = (0.0, 0.0);
+            for e in 0..ELEMENTS {
+                let held = limited(state[e][i], cap);
+                let trial = held + stiffness[e] * moved[i];
+                sum += 0.5 * (held + limited(trial, cap));
+                bends += if trial.abs() <= cap { 0.5 * stiffness[e] } else { 0.0 };
+            }
+            force[i] += sum;
+            slope[i] += bends;
+        }
+    }
+
+    fn commit(total: &[f64], spread: &[f64], moved: &[f64], level: &[f64], state: &mut [f64]) {
+        let n = level.len();
+        let (total, spread, moved) = (&total[..n], &spread[..n], &moved[..n]);
+        let (first, rest) = state.split_at_mut(n);
+        let (second, rest) = rest.split_at_mut(n);
+        let (third, fourth) = rest.split_at_mut(n);
+        let fourth = &mut fourth[..n];
+        for i in 0..n {
+            let cap = level[i] / ELEMENTS as f64;
+            let stiffness = stiffnesses(total[i], spread[i]);
+            let end = |held: f64, e: usize| limited(limited(held, cap) + stiffness[e] * moved[i], cap);
+            first[i] = end(first[i], 0);
+            second[i] = end(second[i], 1);
+            third[i] = end(third[i], 2);
+            fourth[i] = end(fourth[i], 3);
+        }
+    }
 }
 
 impl Element for MaxwellSlip {
@@ -114,27 +161,12 @@ impl Element for MaxwellSlip {
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        let lanes = out.force.len();
-        for i in 0..lanes {
-            let cap = step.level[i] / ELEMENTS as f64;
-            for (e, stiffness) in stiffnesses(p.get(0)[i], p.get(1)[i]).into_iter().enumerate() {
-                let held = limited(state[e * lanes + i], cap);
-                let trial = held + stiffness * step.displacement[i];
-                out.force[i] += 0.5 * (held + limited(trial, cap));
-                out.stiffness[i] += if trial.abs() <= cap { 0.5 * stiffness } else { 0.0 };
-            }
-        }
+        let (moved, level) = (step.displacement, step.level);
+        respond(p.get(0), p.get(1), moved, level, state, out.force, out.stiffness);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
-        let lanes = step.level.len();
-        for i in 0..lanes {
-            let cap = step.level[i] / ELEMENTS as f64;
-            for (e, stiffness) in stiffnesses(p.get(0)[i], p.get(1)[i]).into_iter().enumerate() {
-                let held = limited(state[e * lanes + i], cap);
-                state[e * lanes + i] = limited(held + stiffness * step.displacement[i], cap);
-            }
-        }
+        commit(p.get(0), p.get(1), step.displacement, step.level, state);
     }
 
     /// Elements that slide go on sliding; those that hold are bent.

@@ -182,11 +182,8 @@ impl Effect for Free {
 
     /// What the curve has left of its value at rest, where that is a hump.
     fn hump(&self, p: Parameters<'_>, level_velocity: &[f64], share: &mut [f64]) -> bool {
-        for (i, share) in share.iter_mut().enumerate() {
-            let (hats, rest) = (hats(level_velocity[i], p.get(FREE)[i]), p.get(0)[i]);
-            let sum: f64 = hats.iter().enumerate().map(|(k, hat)| p.get(k)[i] * hat).sum();
-            *share = if rest > 0.0 { (sum / rest).clamp(0.0, 1.0) } else { hats[0] };
-        }
+        let values = std::array::from_fn(|k| p.get(k));
+        left(values, p.get(FREE), level_velocity, share);
         true
     }
 }
@@ -209,6 +206,24 @@ fn hats(velocity: f64, high: f64) -> [f64; FREE] {
 }
 
 vectorised! {
+    fn left(values: [&[f64]; FREE], high: &[f64], velocity: &[f64], share: &mut [f64]) {
+        let n = share.len();
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = values;
+        let (c0, c1, c2, c3, c4) = (&c0[..n], &c1[..n], &c2[..n], &c3[..n], &c4[..n]);
+        let (c5, c6, c7, c8) = (&c5[..n], &c6[..n], &c7[..n], &c8[..n]);
+        let (high, velocity) = (&high[..n], &velocity[..n]);
+        for i in 0..n {
+            let h = hats(velocity[i], high[i]);
+            let low = c0[i] * h[0] + c1[i] * h[1] + c2[i] * h[2] + c3[i] * h[3];
+            let top = c4[i] * h[4] + c5[i] * h[5] + c6[i] * h[6] + c7[i] * h[7] + c8[i] * h[8];
+            let rests = c0[i] > 0.0;
+            let part = (low + top) / if rests { c0[i] } else { 1.0 };
+            let part = if part < 0.0 { 0.0 } else { part };
+            let part = if part > 1.0 { 1.0 } else { part };
+            share[i] = if rests { part } else { h[0] };
+        }
+    }
+
     fn curve(values: [&[f64]; FREE], high: &[f64], velocity: &[f64], bond: &[f64], level: &mut [f64]) {
         let n = level.len();
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = values;
