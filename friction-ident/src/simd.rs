@@ -265,7 +265,9 @@ mod tests {
             assert!((found / exact - 1.0).abs() < 5e-16, "{x}: {found:e} {exact:e}");
         }
         assert_eq!((super::exp(0.0), super::exp(-0.0)), (1.0, 1.0));
-        assert!(super::exp(-1e9) < 1e-300 && super::exp(1e9) > 1e300 && super::exp(f64::NAN).is_nan());
+        assert!(
+            super::exp(-1e9) < 1e-300 && super::exp(1e9) > 1e300 && super::exp(f64::NAN).is_nan()
+        );
     }
 
     #[test]

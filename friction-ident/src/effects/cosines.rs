@@ -142,9 +142,8 @@ mod tests {
     #[test]
     fn lanes_beside_each_other_have_the_bits_of_a_lane_alone() {
         let lanes = 2 * WIDTH + 3;
-        let values: Vec<Vec<f64>> = (0..lanes)
-            .map(|i| vec![1.0 + i as f64, -0.5, 0.3 * i as f64, -0.1, 0.2])
-            .collect();
+        let values: Vec<Vec<f64>> =
+            (0..lanes).map(|i| vec![1.0 + i as f64, -0.5, 0.3 * i as f64, -0.1, 0.2]).collect();
         let mixed: Vec<f64> = (0..5).flat_map(|k| values.iter().map(move |v| v[k])).collect();
         let position: Vec<f64> = (0..lanes).map(|i| -0.15 + 0.03 * i as f64).collect();
         let mut level = vec![0.0; lanes];

@@ -94,6 +94,11 @@ impl Past {
         (self.time(last, i), self.value(last, i))
     }
 
+    /// The time of the last sample of each lane.
+    pub fn newest_times(&self) -> &[f64] {
+        &self.time[(self.slots() - 1) * self.lanes..]
+    }
+
     fn slots(&self) -> usize {
         self.time.len() / self.lanes.max(1)
     }

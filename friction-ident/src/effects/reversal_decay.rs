@@ -6,7 +6,7 @@ use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
 use crate::effects::c_dynamics::PAST;
-use crate::simd::exp;
+use crate::simd::{exp, vectorised};
 
 /// `level += F_r exp(-|distance since the reversal| / l)`.
 #[derive(Clone, Copy, Debug)]
@@ -89,16 +89,8 @@ impl Memory for ReversalDecay {
         out: &mut Recalled<'_>,
     ) {
         let (distance, direction) = state.split_at(out.level.len());
-        for (i, level) in out.level.iter_mut().enumerate() {
-            // From the begin of the step to where the level is asked for.
-            let ahead = (m.time[i] - past.newest(i).0).max(0.0) * m.velocity[i].abs();
-            // At rest the drive says where it will go: else the level would come a step after the breakaway.
-            let rests = m.velocity[i] == 0.0;
-            let going = if rests { m.drive_force[i] } else { m.velocity[i] };
-            let turns = going * direction[i] < 0.0;
-            let since = if turns { ahead } else { distance[i] + ahead };
-            *level += p.get(0)[i] * exp(-since / p.get(1)[i]);
-        }
+        let (begin, now) = (past.newest_times(), m.time);
+        recall(p, begin, now, m.velocity, m.drive_force, distance, direction, out.level);
     }
 
     fn remember(&self, _p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
@@ -110,6 +102,33 @@ impl Memory for ReversalDecay {
                 distance[i] = if turned { moved.abs() } else { distance[i] + moved.abs() };
                 direction[i] = moved.signum();
             }
+        }
+    }
+}
+
+vectorised! {
+    fn recall(
+        p: Parameters<'_>,
+        begin: &[f64],
+        now: &[f64],
+        velocity: &[f64],
+        drive_force: &[f64],
+        distance: &[f64],
+        direction: &[f64],
+        level: &mut [f64],
+    ) {
+        let n = level.len();
+        let (size, length, begin, now) = (&p.get(0)[..n], &p.get(1)[..n], &begin[..n], &now[..n]);
+        let (velocity, drive_force) = (&velocity[..n], &drive_force[..n]);
+        let (distance, direction) = (&distance[..n], &direction[..n]);
+        for i in 0..n {
+            // From the begin of the step to where the level is asked for.
+            let ahead = (now[i] - begin[i]).max(0.0) * velocity[i].abs();
+            // At rest the drive says where it will go: else the level would come a step after the breakaway.
+            let going = if velocity[i] == 0.0 { drive_force[i] } else { velocity[i] };
+            let turns = going * direction[i] < 0.0;
+            let since = ahead + if turns { 0.0 } else { distance[i] };
+            level[i] += size[i] * exp(-since / length[i]);
         }
     }
 }

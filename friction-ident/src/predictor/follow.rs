@@ -5,35 +5,95 @@ use super::strips::Strip;
 use super::{Predictor, STEP, STEP_OF_TWO, VECTOR};
 use crate::effects::Slot;
 use crate::model::Model;
+use crate::simd::{limited, vectorised};
 use crate::simulator::{Input, Plants, SimulationError, Start};
 
-/// What happens to a model at a sample.
-pub(super) struct Step {
+/// What happens to models at a sample, one value for each.
+pub(super) struct Step<'a> {
     /// Measured less shown position, m or rad.
-    pub error: f64,
-    /// What is added to position and velocity after it.
-    pub fed: (f64, f64),
-    /// Whether the model rests at its end.
-    pub rests: bool,
+    pub error: &'a [f64],
+    /// What is added to the position after it, m or rad.
+    pub dx: &'a [f64],
+    /// What is added to the velocity, m/s or rad/s.
+    pub dv: &'a [f64],
+    /// Velocity before that.
+    pub velocity: &'a [f64],
+}
+
+/// Shares of an error that go to the position and to the velocity (1/s), for each model.
+struct Shares {
+    position: Vec<f64>,
+    velocity: Vec<f64>,
+}
+
+impl Shares {
+    fn new(count: usize) -> Self {
+        Self { position: vec![0.0; count], velocity: vec![0.0; count] }
+    }
+
+    /// Those of a sample.
+    fn set(&mut self, gains: &[&Gain], n: usize) {
+        for ((position, velocity), gain) in
+            self.position.iter_mut().zip(&mut self.velocity).zip(gains)
+        {
+            (*position, *velocity) = (gain.position[n], gain.velocity[n]);
+        }
+    }
+}
+
+vectorised! {
+    /// What is fed back of errors, within a limit; what is no number is not.
+    fn feed(
+        error: &[f64],
+        velocity: &[f64],
+        rest_speed: f64,
+        most: f64,
+        moving: &Shares,
+        at_rest: &Shares,
+        dx: &mut [f64],
+        dv: &mut [f64],
+    ) {
+        let n = error.len();
+        let (velocity, dx, dv) = (&velocity[..n], &mut dx[..n], &mut dv[..n]);
+        let (gx, gv) = (&moving.position[..n], &moving.velocity[..n]);
+        let (rx, rv) = (&at_rest.position[..n], &at_rest.velocity[..n]);
+        for i in 0..n {
+            let rests = velocity[i].abs() < rest_speed;
+            let (x, v) = if rests { (rx[i], rv[i]) } else { (gx[i], gv[i]) };
+            let finite = error[i].abs() < f64::INFINITY;
+            let fed = if finite { limited(error[i], most) } else { 0.0 };
+            dx[i] = x * fed;
+            dv[i] = v * fed;
+        }
+    }
 }
 
 impl Predictor {
     /// Runs models of the same effects along the recording, each at its own setting, every piece from its begin to its
-    /// end; tells what happens at every sample but the first of a piece: its number, that of the model, and the step.
+    /// end; tells what happens at every sample but the first of a piece.
     pub(super) fn follow(
         &self,
         trials: &[(Model, usize)],
-        see: impl FnMut(usize, usize, &Step),
+        see: impl FnMut(usize, &Step<'_>),
     ) -> Result<(), SimulationError> {
-        self.follow_errors(trials, |n, shown| self.position[n] - shown, see)
+        self.follow_errors(trials, self.missed(), see)
     }
 
-    /// The same with errors of the caller's: from the number of the sample and the position that a model shows there.
+    /// Errors of positions that models show: what they miss.
+    pub(super) fn missed(&self) -> impl Fn(usize, &[f64], &mut [f64]) {
+        |n, shown, error| {
+            for (error, shown) in error.iter_mut().zip(shown) {
+                *error = self.position[n] - shown;
+            }
+        }
+    }
+
+    /// The same with errors of the caller's: from the number of the sample and the positions that models show there.
     pub(super) fn follow_errors(
         &self,
         trials: &[(Model, usize)],
-        mut error: impl FnMut(usize, f64) -> f64,
-        mut see: impl FnMut(usize, usize, &Step),
+        mut error: impl FnMut(usize, &[f64], &mut [f64]),
+        mut see: impl FnMut(usize, &Step<'_>),
     ) -> Result<(), SimulationError> {
         self.segments.iter().try_for_each(|segment| {
             self.side_by_side(&[Strip::whole(segment)], trials, &mut error, &mut see)
@@ -45,8 +105,8 @@ impl Predictor {
         &self,
         strips: &[Strip],
         trials: &[(Model, usize)],
-        mut error: impl FnMut(usize, f64) -> f64,
-        mut see: impl FnMut(usize, usize, &Step),
+        mut error: impl FnMut(usize, &[f64], &mut [f64]),
+        mut see: impl FnMut(usize, &Step<'_>),
     ) -> Result<(), SimulationError> {
         let (count, used) = (trials.len(), trials.len() * strips.len());
         let mut models: Vec<Model> =
@@ -65,7 +125,8 @@ impl Predictor {
         let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
         let all = models.len();
         let (mut length, mut command) = (vec![0.0; all], vec![0.0; all]);
-        let (mut dx, mut dv) = (vec![0.0; all], vec![0.0; all]);
+        let (mut dx, mut dv, mut errors) = (vec![0.0; all], vec![0.0; all], vec![0.0; count]);
+        let (mut moving, mut still) = (Shares::new(count), Shares::new(count));
         // Lanes that fill a vector go with the last strip.
         let lanes = |s: usize| s * count..if s + 1 < strips.len() { (s + 1) * count } else { all };
         for (s, strip) in strips.iter().enumerate() {
@@ -91,17 +152,16 @@ impl Predictor {
             for (s, strip) in strips.iter().enumerate() {
                 let n = at(strip) + 1;
                 let told = strip.from + j + 1 == n && strip.tells.contains(&n);
-                for (i, lane) in lanes(s).take(count).enumerate() {
-                    let error = error(n, shown[lane]);
-                    let rests = velocity[lane].abs() < self.rest_speed;
-                    let g = if rests { at_rest[i] } else { gain[i] };
-                    let finite = error.is_finite();
-                    let fed = if finite { error.clamp(-self.fed_back, self.fed_back) } else { 0.0 };
-                    dx[lane] = g.position[n] * fed;
-                    dv[lane] = g.velocity[n] * fed;
-                    if told {
-                        see(n, i, &Step { error, fed: (dx[lane], dv[lane]), rests });
-                    }
+                let lanes = s * count..(s + 1) * count;
+                moving.set(&gain, n);
+                still.set(&at_rest, n);
+                let velocity = &velocity[lanes.clone()];
+                let (dx, dv) = (&mut dx[lanes.clone()], &mut dv[lanes.clone()]);
+                error(n, &shown[lanes], &mut errors);
+                let (rest_speed, most) = (self.rest_speed, self.fed_back);
+                feed(&errors, velocity, rest_speed, most, &moving, &still, dx, dv);
+                if told {
+                    see(n, &Step { error: &errors, dx, dv, velocity });
                 }
             }
             for i in used..all {

@@ -50,8 +50,9 @@ impl Predictor {
     /// the true one that friction acts in another direction, above it the noise of the sensor turns it around.
     pub fn missing_force(&self, model: &Model, setting: usize) -> Option<Series> {
         let mut past = vec![Past::default(); self.time.len()];
-        self.follow(&[(model.clone(), setting)], |n, _, step| {
-            past[n] = Past { error: step.error, fed: step.fed, rests: step.rests };
+        self.follow(&[(model.clone(), setting)], |n, step| {
+            let rests = step.velocity[0].abs() < self.rest_speed;
+            past[n] = Past { error: step.error[0], fed: (step.dx[0], step.dv[0]), rests };
         })
         .ok()?;
         let prior = self.force.iter().map(|f| f * f).sum::<f64>() / self.force.len() as f64;

@@ -269,10 +269,9 @@ impl Predictor {
     pub fn shown(&self, model: &Model, setting: usize) -> Vec<f64> {
         let mut shown = vec![f64::NAN; self.time.len()];
         let trial = [(model.clone(), setting)];
-        let error = |n: usize, shown: f64| self.position[n] - shown;
         let seen = self.teams.iter().try_for_each(|team| {
-            self.side_by_side(team, &trial, error, |n, _, step| {
-                shown[n] = self.position[n] - step.error;
+            self.side_by_side(team, &trial, self.missed(), |n, step| {
+                shown[n] = self.position[n] - step.error[0];
             })
         });
         if seen.is_err() {
@@ -299,27 +298,31 @@ impl Predictor {
         let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
         let told = team.iter().flat_map(|strip| place[strip.tells.clone()].iter().flatten());
         let (first, count) = (told.clone().next().copied().unwrap_or(0), told.count());
-        let mut errors = vec![vec![f64::NAN; count]; trials.len()];
-        let error = |n: usize, shown: f64| self.position[n] - shown;
-        let plants = self.side_by_side(team, trials, error, |n, i, step| {
+        // Sample by sample first.
+        let mut rows = vec![f64::NAN; count * trials.len()];
+        let plants = self.side_by_side(team, trials, self.missed(), |n, step| {
             if let Some(place) = place[n] {
-                // A model that runs away errs as much as can be, whatever it says.
-                let (scaled, cut) = (step.error * gain[i].relative[n], LIMIT * gain[i].expected);
-                let error = if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut };
-                errors[i][place - first] = error;
+                rows[(place - first) * trials.len()..][..trials.len()].copy_from_slice(step.error);
             }
         });
-        if plants.is_err() {
-            errors.iter_mut().for_each(|errors| errors.fill(f64::NAN));
-        }
-        errors
+        let failed = plants.is_err();
+        let scaled = |(i, gain): (usize, &&Gain)| -> Vec<f64> {
+            let cut = LIMIT * gain.expected;
+            let each = self.counted[first..first + count].iter().enumerate().map(|(k, n)| {
+                // A model that runs away errs as much as can be, whatever it says.
+                let scaled = rows[k * trials.len() + i] * gain.relative[*n];
+                let error = if scaled.is_finite() { scaled.clamp(-cut, cut) } else { cut };
+                if failed { f64::NAN } else { error }
+            });
+            each.collect()
+        };
+        gain.iter().enumerate().map(scaled).collect()
     }
 
     /// The gain of a setting while the axis moves.
     fn gain(&self, setting: usize) -> &Gain {
         self.gain_of(setting % self.ladder.len())
     }
-
 }
 
 /// The values of these parts, one after the other.

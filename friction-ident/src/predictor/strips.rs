@@ -85,7 +85,8 @@ mod tests {
         assert_eq!(told, all);
         assert_eq!(teams.iter().map(Vec::len).collect::<Vec<_>>(), [7]);
         for strip in teams.iter().flatten() {
-            let inside = segments.iter().any(|s| s.contains(&strip.from) && s.end >= strip.tells.end);
+            let inside =
+                segments.iter().any(|s| s.contains(&strip.from) && s.end >= strip.tells.end);
             assert!(inside, "{strip:?}");
         }
     }

@@ -19,18 +19,17 @@ impl Predictor {
     pub fn surrogate(&self, model: &Model, setting: usize, seed: u64) -> Option<Vec<f64>> {
         let trial = [(model.clone(), setting)];
         let mut errors = Vec::with_capacity(self.time.len());
-        self.follow(&trial, |_, _, step| errors.push(step.error)).ok()?;
+        self.follow(&trial, |_, step| errors.push(step.error[0])).ok()?;
         if !errors.iter().all(|error| error.is_finite()) {
             return None;
         }
         let mut shuffled = shuffled(&errors, self.samples_in(BLOCK), seed).into_iter();
         let mut positions = self.position.clone();
-        let error = |n: usize, shown: f64| {
-            let error = shuffled.next().unwrap_or_default();
-            positions[n] = shown + error;
-            error
+        let error = |n: usize, shown: &[f64], error: &mut [f64]| {
+            error[0] = shuffled.next().unwrap_or_default();
+            positions[n] = shown[0] + error[0];
         };
-        self.follow_errors(&trial, error, |_, _, _| ()).ok()?;
+        self.follow_errors(&trial, error, |_, _| ()).ok()?;
         positions.iter().all(|x| x.is_finite()).then_some(positions)
     }
 

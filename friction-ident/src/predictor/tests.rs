@@ -188,6 +188,29 @@ fn errors_do_not_depend_on_the_number_of_threads_nor_on_the_models_beside() {
     assert_eq!(all[20], alone);
 }
 
+/// A filter forgets where it began: strips side by side say what one long run says.
+#[test]
+fn strips_side_by_side_err_as_one_run_does() {
+    let contact = [("k_t", 4e6), ("spread", 2.5)];
+    for model in [table(), table().with("presliding:maxwell-slip", &contact).unwrap()] {
+        let predictor = predictor(&recording(&model, Hold::ZeroOrder, QUIET));
+        let long = Predictor {
+            time: predictor.time.iter().map(|t| 4.0 * t).collect(),
+            ..predictor.clone()
+        };
+        let long = Predictor {
+            teams: teams(&long.segments, &long.time, |k| long.speed_around(k)),
+            ..long
+        };
+        assert_eq!(long.teams[0].len(), 4);
+        let cut = Predictor { teams: long.teams, ..predictor.clone() };
+        let (setting, whole) = best(&predictor, &model);
+        let strips = cut.errors(&[(model, setting)]).swap_remove(0);
+        let apart: Vec<f64> = strips.iter().zip(&whole).map(|(a, b)| a - b).collect();
+        assert!(rms(&apart) < 1e-2 * rms(&whole), "{:e} {:e}", rms(&apart), rms(&whole));
+    }
+}
+
 #[test]
 fn a_model_that_runs_away_errs_as_much_as_can_be() {
     let mut model = table();
@@ -245,7 +268,7 @@ fn a_surrogate_leaves_its_model_the_same_errors_in_another_order() {
     let (setting, _) = best(&predictor, &table());
     let errors = |predictor: &Predictor| {
         let mut all = Vec::new();
-        predictor.follow(&[(table(), setting)], |_, _, step| all.push(step.error)).unwrap();
+        predictor.follow(&[(table(), setting)], |_, step| all.push(step.error[0])).unwrap();
         all
     };
     let position = predictor.surrogate(&table(), setting, 3).unwrap();

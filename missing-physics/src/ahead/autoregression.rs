@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::statistics::basis::dot;
+use crate::statistics::basis::{add_scaled, dot};
 
 /// Predictors of every order from none: the first values of a run have fewer before them.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,12 +78,18 @@ impl Autoregression {
     /// What it leaves of values.
     pub fn left(&self, values: &[f64], runs: &[Range<usize>]) -> Vec<f64> {
         let mut left = vec![0.0; values.len()];
+        let all = &self.with_before(self.order()).coefficients;
         for run in runs {
-            for k in run.clone() {
+            let known = (run.start + all.len()).min(run.end);
+            for k in run.start..known {
                 let known = &self.with_before(k - run.start).coefficients;
                 let before = values[run.start..k].iter().rev();
                 let foretold: f64 = known.iter().zip(before).map(|(a, v)| a * v).sum();
                 left[k] = values[k] - foretold;
+            }
+            left[known..run.end].copy_from_slice(&values[known..run.end]);
+            for (lag, a) in (1..).zip(all).take_while(|_| known < run.end) {
+                add_scaled(&mut left[known..run.end], -a, &values[known - lag..run.end - lag]);
             }
         }
         left

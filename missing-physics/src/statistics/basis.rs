@@ -1,23 +1,50 @@
 //! An orthonormal basis that grows column by column, and least squares under sign constraints.
 
+use multiversion::multiversion;
+
 /// Columns shorter than this share of their length before projection add nothing new.
 const RANK_TOLERANCE: f64 = 1e-7;
 
+/// Partial sums of a scalar product: two of the widest vectors.
+const SUMS: usize = 16;
+/// Shorter columns are not worth the choice of an instruction set.
+const LONG: usize = 64;
+
 /// Scalar product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // Four partial sums: a fixed order that the compiler can still vectorise.
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let tail: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a4.zip(b4) {
-        for lane in 0..4 {
+    if a.len() < LONG { products::<4>(a, b) } else { long_dot(a, b) }
+}
+
+/// The order of the sums is that of no instruction set, and nothing is fused: the same bits everywhere.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn long_dot(a: &[f64], b: &[f64]) -> f64 {
+    products::<SUMS>(a, b)
+}
+
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn products<const N: usize>(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; N];
+    let (wide_a, wide_b) = (a.chunks_exact(N), b.chunks_exact(N));
+    let rest = wide_a.remainder().iter().zip(wide_b.remainder());
+    let rest: f64 = rest.map(|(x, y)| x * y).sum();
+    for (x, y) in wide_a.zip(wide_b) {
+        for lane in 0..N {
             sums[lane] += x[lane] * y[lane];
         }
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + tail
+    let mut width = N / 2;
+    while width > 0 {
+        for lane in 0..width {
+            sums[lane] += sums[lane + width];
+        }
+        width /= 2;
+    }
+    sums[0] + rest
 }
 
 /// `y += factor * x`.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
 }
