@@ -167,7 +167,8 @@ impl Predictor {
         let parts = spread(&self.segments, share, |segment| {
             let interval =
                 (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
-            ((PIECE / interval) as usize).clamp(50, most / 4)
+            // A segment that is shorter is a piece.
+            ((PIECE / interval) as usize).clamp(50, most / 4).min(segment.len())
         });
         let mut end = 0;
         let segments = parts.iter().map(|part| {

@@ -240,6 +240,17 @@ fn a_part_of_a_recording_has_as_many_samples_as_asked_and_all_of_its_places() {
 }
 
 #[test]
+fn of_segments_that_are_shorter_than_a_piece_whole_ones_are_taken() {
+    let data = recording(&table(), Hold::ZeroOrder, QUIET);
+    let segment = (0..i64::from(SAMPLES)).map(|k| k / 400).collect();
+    let (time, channels) = (data.time().to_vec(), data.channels().to_vec());
+    let data = Recording::with_segments("short", time, channels, segment).unwrap();
+    let part = predictor(&data).thinned(3000).unwrap();
+    let samples: usize = part.segments.iter().map(Range::len).sum();
+    assert!((2000..=4000).contains(&samples), "{samples}");
+}
+
+#[test]
 fn the_response_to_a_ripple_is_what_a_simulation_of_it_changes() {
     let ripple =
         |a: f64, b: f64| table().with("ripple", &[("a_1", a), ("b_1", b), ("l", 5e-3)]).unwrap();
