@@ -131,6 +131,7 @@ mod restart;
 mod run;
 mod scalar;
 mod selection;
+mod steady_state;
 mod trace;
 pub mod trials;
 mod turn;
@@ -139,7 +140,7 @@ mod wide;
 pub use aep::{
     Aep, AepIndividual, AepMutation, AgeLimit, Components, Division, Spread, StepScale, StepUnit,
 };
-pub use algorithm::{Algorithm, Best, Method, Start};
+pub use algorithm::{Algorithm, Best, Method, Start, StartedSteadyState};
 pub use border::Border;
 pub use budget::{Budget, Stagnation, StopReason};
 pub use checkpoint::CheckpointError;
@@ -170,6 +171,7 @@ pub use random::{Purpose, Stream, Streams};
 pub use restart::Restarting;
 pub use scalar::Scalar;
 pub use selection::{OneToOne, Selection, Ties, Tournament};
+pub use steady_state::SteadyState;
 pub use trace::{Trace, TraceFormat};
 
 /// The examples of the README, run as tests.
