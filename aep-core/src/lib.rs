@@ -70,7 +70,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Elsewhere.** Who evaluates on a cluster or on a test bench asks and tells: see [`Algorithm`].
+//! **Elsewhere.** Who evaluates on a cluster or on a test bench asks and tells: see [`Algorithm`], and [`SteadyState`]
+//! for one position at a time, where nobody waits for who is slow.
 //!
 //! **Failures.** A cost that is NaN or infinite, an evaluation that ends in an error or panics: each
 //! is the worst cost, each is counted in [`Failures`], and the run goes on. (A program built with
@@ -92,7 +93,7 @@
 //!
 //! - **The same seed gives the same bits** on one thread, on many, and across a resumption: every
 //!   random number comes from a stream named by (seed, purpose, generation, individual), see
-//!   [`random`]. Across platforms the last bits of exp and ln may differ, and with them the run.
+//!   [`random`]. (A [`SteadyState`] depends on the order in which its costs come, too.) Across platforms the last bits of exp and ln may differ, and with them the run.
 //! - **No input panics.** Errors say what is wrong, where, and what mends it; what fits into no memory is one, too
 //!   ([`ConfigError::TooLarge`]). Only an index beyond the end of [`Points`] or of a [`Batch`] panics, as that of a slice does.
 //! - **Nothing is silently on.** Each deviation from the paper's rules is a named setting.

@@ -27,9 +27,10 @@ pub fn evaluate<'py>(
         Err(bad_input(format!("'{name}' has {} values for {samples} samples", values.len())))
     };
     let columns = formula.names().iter().map(column).collect::<PyResult<Vec<_>>>()?;
-    let mut stack = Vec::new();
+    let (mut at, mut stack) = (Vec::new(), Vec::new());
     let value = |k: usize| {
-        let at: Vec<f64> = columns.iter().map(|values| values[k]).collect();
+        at.clear();
+        at.extend(columns.iter().map(|values| values[k]));
         formula.value_on(&at, &mut stack)
     };
     Ok(PyArray1::from_vec(py, (0..samples).map(value).collect()))
