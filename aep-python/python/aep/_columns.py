@@ -22,7 +22,7 @@ def _named(data: Any) -> Iterable[tuple[Any, Any]] | None:
         return data.items()
     if isinstance(data, np.ndarray):
         return None if data.dtype.names is None else [(name, data[name]) for name in data.dtype.names]
-    if hasattr(data, "collect_schema"):
+    if hasattr(data, "collect") and not hasattr(data, "to_numpy"):
         raise TypeError(f"data is a {type(data).__name__}, which has not been computed\n  give data.collect()")
     # Arrow's tables have their columns, not the names of them, under `columns`.
     names = getattr(data, "column_names", None)
