@@ -123,7 +123,7 @@ def minimize(
     elif resume:
         raise ValueError("resume needs the file of the run\n  give checkpoint=FILE")
     cost, losses = Cost(fun, args, vectorized, constraints, ceiling), Losses()
-    heard = counter(callback) if hasattr(callback, "update") else callback
+    heard: Any = counter(callback) if hasattr(callback, "update") else callback  # type: ignore[arg-type]
     told = None if heard is None else lambda facts: _called(heard, facts)
     if asynchronous:
         if chunk not in (None, 1):

@@ -63,7 +63,7 @@ def evaluator(
 def count(workers: int) -> int:
     """The number of processes that ``workers`` asks for."""
     if workers == -1:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpucount() or 1
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if workers < 1:
         raise ValueError(f"workers is {workers}\n  give a number of processes, or -1 for one a core")
     return workers
