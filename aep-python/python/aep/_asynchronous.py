@@ -85,7 +85,8 @@ class _Loop:
     ) -> None:
         self.steady, self.sends, self.retries, self.losses = steady, sends, retries, losses
         self.limits, self.identity, self.kept, self.told = limits, identity, kept, told
-        self.counts, self.away = Counts(), {}  # type: tuple[Counts, dict[Future[Evaluated], Away]]
+        self.counts = Counts()
+        self.away: dict[Future[Evaluated], Away] = {}
         self.size = steady.individuals
         self.width = min(self.size, sends.width or self.size)
         self.checkpoint_error: str | None = None
@@ -142,9 +143,9 @@ class _Loop:
             asked = self.steady.ask()
             if asked is None:
                 return
-            self._away(Away(*asked))
+            self._begin(Away(*asked))
 
-    def _away(self, task: Away) -> None:
+    def _begin(self, task: Away) -> None:
         try:
             self.away[self.sends(task.position)] = task
         except Exception as error:
@@ -190,7 +191,7 @@ class _Loop:
                 costs, errors, first = self.sends.alone(task.position)
                 self._tell(task, float(costs[0]), errors, first)
             else:
-                self._away(task)
+                self._begin(task)
 
     def _tell(self, task: Away, cost: float, errors: int, first: str | None) -> None:
         counts = self.counts
