@@ -110,7 +110,7 @@ def _place(law: Callable[..., Any], trace: TracebackType | None) -> str:
     ours, found = os.path.dirname(__file__), ""
     while trace is not None:
         file, line = trace.tb_frame.f_code.co_filename, trace.tb_lineno
-        if not file.startswith(ours) and f"{os.sep}numpy{os.sep}" not in file:
+        if not file.startswith(ours) and f"{os.sep}numpy{os.sep}" not in file and file != "<__array_function__ internals>":
             source = linecache.getline(file, line).strip()
             found = f"  {os.path.basename(file)}, line {line}" + (f": {source}" if source else "")
         trace = trace.tb_next

@@ -41,8 +41,9 @@ class Symbol(NDArrayOperatorsMixin):
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
         # `y += 1` names its own target; the result is bound to the name all the same.
         out = keywords.pop("out", ())
-        if method != "__call__":
-            raise Untraceable(f"np.{ufunc.__name__}.{method} joins several samples{_OF_ONE_SAMPLE}")
+        if method != "__call__" or ufunc.__name__ in _JOINING:
+            how = "" if method == "__call__" else f".{method}"
+            raise Untraceable(f"np.{ufunc.__name__}{how} joins several samples{_OF_ONE_SAMPLE}")
         if keywords:
             raise Untraceable(f"np.{ufunc.__name__} with {', '.join(keywords)}\n  write np.where(condition, a, b)")
         if any(not isinstance(target, Symbol) for target in out if target is not None):
@@ -109,7 +110,7 @@ _THERE_ARE = (
 #: What makes one number of many samples, or moves between them.
 _JOINING = frozenset(
     "sum mean std var median min max amin amax ptp prod cumsum cumprod diff gradient trapezoid convolve argmin argmax any all roll sort "
-    "percentile quantile average nanmean nanmax nanmin dot cov correlate fft shift rolling".split()
+    "percentile quantile average nanmean nanmax nanmin dot matmul cov correlate fft ifft rfft shift rolling".split()
 )
 
 
