@@ -1,6 +1,6 @@
 //! What the driver needs of an optimizer.
 
-use crate::{Batch, CheckpointError, ConfigError, Domain, Points, Scalar, TellError};
+use crate::{Batch, CheckpointError, ConfigError, Domain, Points, Scalar, SteadyState, TellError};
 
 /// The best position found so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,4 +157,13 @@ pub trait Method<T: Scalar = f64>: Send + Sync {
     /// # Errors
     /// When a setting is outside its range or an initial point outside the domain.
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError>;
+
+    /// A fresh run whose individuals wait for nobody; None where the method needs whole generations.
+    fn start_steady_state(&self, start: &Start<'_, T>) -> Option<StartedSteadyState<T>> {
+        let _ = start;
+        None
+    }
 }
+
+/// A run of [`Method::start_steady_state`], or why it cannot begin.
+pub type StartedSteadyState<T> = Result<Box<dyn SteadyState<T>>, ConfigError>;

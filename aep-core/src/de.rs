@@ -3,9 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::random::{self, Stream};
+use crate::steady_state::OneByOne;
 use crate::{
     Algorithm, Border, Child, ConfigError, Domain, Engine, Individual, Method, Mutation, OneToOne,
-    Population, Scalar, Start,
+    Population, Scalar, Start, StartedSteadyState,
 };
 
 /// Where the factors F and CR come from.
@@ -97,6 +98,15 @@ impl<T: Scalar> Method<T> for De {
         let selection = OneToOne::AcceptEqual;
         let engine = Engine::new("de", start, self.population, self.clone(), selection)?;
         Ok(Box::new(engine.with_configuration(self)))
+    }
+
+    fn start_steady_state(&self, start: &Start<'_, T>) -> Option<StartedSteadyState<T>> {
+        let rules = (self.clone(), OneToOne::AcceptEqual);
+        let run = || -> StartedSteadyState<T> {
+            self.check()?;
+            Ok(Box::new(OneByOne::new("de", start, self.population, rules, self)?))
+        };
+        Some(run())
     }
 }
 

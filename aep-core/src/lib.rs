@@ -70,7 +70,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! **Elsewhere.** Who evaluates on a cluster or on a test bench asks and tells: see [`Algorithm`].
+//! **Elsewhere.** Who evaluates on a cluster or on a test bench asks and tells: see [`Algorithm`], and [`SteadyState`]
+//! for one position at a time, where nobody waits for who is slow.
 //!
 //! **Failures.** A cost that is NaN or infinite, an evaluation that ends in an error or panics: each
 //! is the worst cost, each is counted in [`Failures`], and the run goes on. (A program built with
@@ -92,7 +93,7 @@
 //!
 //! - **The same seed gives the same bits** on one thread, on many, and across a resumption: every
 //!   random number comes from a stream named by (seed, purpose, generation, individual), see
-//!   [`random`]. Across platforms the last bits of exp and ln may differ, and with them the run.
+//!   [`random`]. (A [`SteadyState`] depends on the order in which its costs come, too.) Across platforms the last bits of exp and ln may differ, and with them the run.
 //! - **No input panics.** Errors say what is wrong, where, and what mends it; what fits into no memory is one, too
 //!   ([`ConfigError::TooLarge`]). Only an index beyond the end of [`Points`] or of a [`Batch`] panics, as that of a slice does.
 //! - **Nothing is silently on.** Each deviation from the paper's rules is a named setting.
@@ -131,6 +132,7 @@ mod restart;
 mod run;
 mod scalar;
 mod selection;
+mod steady_state;
 mod trace;
 pub mod trials;
 mod turn;
@@ -139,7 +141,7 @@ mod wide;
 pub use aep::{
     Aep, AepIndividual, AepMutation, AgeLimit, Components, Division, Spread, StepScale, StepUnit,
 };
-pub use algorithm::{Algorithm, Best, Method, Start};
+pub use algorithm::{Algorithm, Best, Method, Start, StartedSteadyState};
 pub use border::Border;
 pub use budget::{Budget, Stagnation, StopReason};
 pub use checkpoint::CheckpointError;
@@ -170,6 +172,7 @@ pub use random::{Purpose, Stream, Streams};
 pub use restart::Restarting;
 pub use scalar::Scalar;
 pub use selection::{OneToOne, Selection, Ties, Tournament};
+pub use steady_state::SteadyState;
 pub use trace::{Trace, TraceFormat};
 
 /// The examples of the README, run as tests.

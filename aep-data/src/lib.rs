@@ -60,6 +60,7 @@ mod text;
 pub mod unit;
 mod write;
 
+use std::borrow::Cow;
 use std::io::Read;
 use std::path::Path;
 
@@ -152,11 +153,13 @@ pub fn parse(path: &Path, bytes: Vec<u8>, mapping: &Mapping) -> Result<Loaded, D
 /// # Ok::<(), aep_data::DataError>(())
 /// ```
 ///
+/// Columns may be lent as slices: what nothing is read from is not copied.
+///
 /// # Errors
 /// Like [`load`].
-pub fn of_columns(
+pub fn of_columns<'a>(
     name: &str,
-    columns: Vec<(String, Vec<f64>)>,
+    columns: Vec<(String, impl Into<Cow<'a, [f64]>>)>,
     mapping: &Mapping,
 ) -> Result<Loaded, DataError> {
     let name = Path::new(name);

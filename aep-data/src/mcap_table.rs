@@ -29,7 +29,7 @@ pub(crate) fn read(
     path: &Path,
     bytes: &[u8],
     wanted: Option<&str>,
-) -> Result<MemoryTable, DataError> {
+) -> Result<MemoryTable<'static>, DataError> {
     let damaged =
         |what: String| DataError::new(path, Problem::Damaged { format: "MCAP file", what });
     let mut file = Contents::default();

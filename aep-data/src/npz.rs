@@ -20,7 +20,7 @@ pub(crate) fn is_npz(bytes: &[u8]) -> bool {
 }
 
 /// The arrays as columns.
-pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<MemoryTable, DataError> {
+pub(crate) fn read(path: &Path, bytes: &[u8]) -> Result<MemoryTable<'static>, DataError> {
     let damaged =
         |what: String| DataError::new(path, Problem::Damaged { format: "NumPy archive", what });
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| damaged(e.to_string()))?;

@@ -18,7 +18,7 @@ pub(crate) fn is_parquet(bytes: &[u8]) -> bool {
 }
 
 /// The columns that hold numbers.
-pub(crate) fn read(path: &Path, bytes: Vec<u8>) -> Result<MemoryTable, DataError> {
+pub(crate) fn read(path: &Path, bytes: Vec<u8>) -> Result<MemoryTable<'static>, DataError> {
     let damaged =
         |what: String| DataError::new(path, Problem::Damaged { format: "Parquet file", what });
     let reader =

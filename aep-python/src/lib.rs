@@ -7,6 +7,7 @@ mod costs;
 mod discover;
 mod drive;
 mod failure;
+mod formula;
 mod found;
 mod minimize;
 mod optimizer;
@@ -14,6 +15,7 @@ mod own_family;
 mod reading;
 mod search;
 mod space;
+mod steady;
 mod task;
 mod trials;
 mod watched;
@@ -30,6 +32,8 @@ mod _aep {
     #[pymodule_export]
     use super::drive::{challenge, compare, effects, experiment, extend, simulate, suggest};
     #[pymodule_export]
+    use super::formula::evaluate;
+    #[pymodule_export]
     use super::found::Found;
     #[pymodule_export]
     use super::minimize::{methods, minimize};
@@ -41,6 +45,8 @@ mod _aep {
     use super::reading::Data;
     #[pymodule_export]
     use super::space::Space;
+    #[pymodule_export]
+    use super::steady::{Steady, stop_message};
     #[pymodule_export]
     use super::task::{Task, tasks};
     #[pymodule_export]

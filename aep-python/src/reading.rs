@@ -74,10 +74,9 @@ impl Data {
         columns: Vec<(String, PyReadonlyArray1<'_, f64>)>,
         reading: Reading,
     ) -> PyResult<Self> {
-        let columns = columns.into_iter();
-        let columns =
-            columns.map(|(name, values)| (name, values.as_array().iter().copied().collect()));
-        let columns: Vec<(String, Vec<f64>)> = columns.collect();
+        // Lent: of a wide frame only what is read is copied. So that nobody writes meanwhile the lock is kept.
+        let columns = columns.iter().map(|(name, values)| Ok((name.clone(), values.as_slice()?)));
+        let columns = columns.collect::<PyResult<Vec<_>>>()?;
         reading.read(|mapping| of_columns(name, columns, mapping))
     }
 

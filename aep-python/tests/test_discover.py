@@ -35,14 +35,73 @@ def test_the_series_is_that_of_the_command(found, command, tmp_path):
             assert (ours[name].astype(str) == theirs[name].fillna("").astype(str)).all(), name
 
 
-@pytest.mark.parametrize("kind", ["dictionary", "pandas", "polars"])
+HOLD = "zero-order" if "zero-order" in EXAMPLE.with_suffix(".toml").read_text() else "sampled"
+
+
+def held(columns, kind):
+    """The example as other packages hold it."""
+    if kind in ("pandas", "polars"):
+        return pytest.importorskip(kind).DataFrame(columns)
+    if kind == "pyarrow":
+        return pytest.importorskip("pyarrow").table(columns)
+    if kind == "arrow interface":
+
+        class Stream:
+            def __init__(self, table):
+                self.table = table
+
+            def __arrow_c_stream__(self, requested_schema=None):
+                return self.table.__arrow_c_stream__(requested_schema)
+
+        return Stream(pytest.importorskip("pyarrow").table(columns))
+    if kind == "records":
+        return np.rec.fromarrays(list(columns.values()), names=list(columns)).view(np.ndarray)
+    if kind == "buffers":
+        return {name: memoryview(values) for name, values in columns.items()}
+    return columns
+
+
+@pytest.mark.parametrize("kind", ["dictionary", "buffers", "records", "pandas", "polars", "pyarrow", "arrow interface"])
 def test_arrays_and_frames_are_read_as_the_file(found, columns, kind):
-    hold = "zero-order" if "zero-order" in EXAMPLE.with_suffix(".toml").read_text() else "sampled"
-    data = columns
-    if kind != "dictionary":
-        data = pytest.importorskip(kind).DataFrame(columns)
-    ours = aep.discover(data, hold=hold)
+    ours = aep.discover(held(columns, kind), hold=HOLD, thresholds={"most": 0})
+    theirs = aep.discover(EXAMPLE, thresholds={"most": 0})
+    assert ours.parameters == theirs.parameters
+
+
+def test_a_frame_is_searched_like_its_file(found, columns):
+    ours = aep.discover(columns, hold=HOLD)
     assert ours.added == found.added and ours.parameters == found.parameters
+
+
+def test_columns_with_gaps_time_zones_and_dates_are_numbers_all_the_same(columns):
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(columns)
+    plain = aep.load(frame).samples
+    force = frame.columns[1]
+    frame["time_s"] = pandas.Timestamp("2024-05-31", tz="Europe/Berlin") + pandas.to_timedelta(frame["time_s"], unit="s")
+    frame[force] = frame[force].astype("Float64")
+    frame.loc[7, force] = pandas.NA
+    frame["remark"] = "none"
+    assert aep.load(frame, time="time_s").samples == plain - 1
+    lists = {name: list(values) for name, values in columns.items()}
+    lists[force][7] = None
+    assert aep.load(lists).samples == plain - 1
+    polars = pytest.importorskip("polars")
+    with pytest.raises(TypeError, match=r"give data.collect\(\)"):
+        aep.load(polars.DataFrame(columns).lazy())
+
+
+def test_what_nothing_is_read_from_is_not_copied(columns):
+    """A wide frame: 400 columns of 20 MB each would be 8 GB."""
+    import resource
+
+    rows = 2_600_000
+    spare = np.zeros(rows)
+    time_s = 1e-3 * np.arange(rows)
+    data = {"time_s": time_s, "force_N": np.sin(time_s), "position_m": np.cos(time_s), **{f"spare {k}": spare for k in range(400)}}
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    assert aep.load(data).samples == rows
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 2_000_000, "kB"
 
 
 def test_a_page_and_a_model_are_those_of_the_command(found, command, tmp_path):
@@ -92,6 +151,27 @@ def test_progress_is_told_and_what_it_raises_ends_the_search():
     with pytest.raises(ZeroDivisionError) as raised:
         aep.discover(EXAMPLE, progress=fails)
     assert raised.value.result.ladder
+
+
+def test_a_bar_is_moved_on_and_told_what_it_is():
+    class Bar:
+        moves, told = 0, []
+
+        def update(self, n):
+            self.moves += n
+
+        def set_description(self, text, refresh=True):
+            self.told.append(text)
+
+    bar = Bar()
+    aep.discover(EXAMPLE, progress=bar, thresholds={"most": 1})
+    assert bar.moves == len(bar.told) > 2 and bar.told[0] == "base fitted" and bar.told[-1] == "finishing"
+    assert any("stribeck" in told for told in bar.told)
+    counted = Bar()
+    aep.minimize(lambda x: x @ x, [(-1, 1)] * 2, maxfun=400, callback=counted)
+    assert counted.moves == 400
+    with pytest.raises(TypeError, match="tqdm"):
+        aep.discover(EXAMPLE, progress=3)
 
 
 def test_ctrl_c_ends_the_search_with_what_was_found_and_other_threads_go_on(columns):

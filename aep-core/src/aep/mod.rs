@@ -10,7 +10,10 @@ pub use individual::AepIndividual;
 pub use mutation::AepMutation;
 pub use step::{AgeLimit, Components, Division, Spread, StepScale, StepUnit};
 
-use crate::{Algorithm, Border, ConfigError, Engine, Method, OneToOne, Scalar, Start};
+use crate::steady_state::OneByOne;
+use crate::{
+    Algorithm, Border, ConfigError, Engine, Method, OneToOne, Scalar, Start, StartedSteadyState,
+};
 
 /// Accelerated evolutionary programming (AEP): direction memory, age, one-to-one competition.
 ///
@@ -193,5 +196,14 @@ impl<T: Scalar> Method<T> for Aep {
 
     fn start(&self, start: &Start<'_, T>) -> Result<Box<dyn Algorithm<T>>, ConfigError> {
         Ok(Box::new(self.engine(start)?))
+    }
+
+    fn start_steady_state(&self, start: &Start<'_, T>) -> Option<StartedSteadyState<T>> {
+        let rules = (AepMutation::new(self.clone()), OneToOne::Strict);
+        let run = || -> StartedSteadyState<T> {
+            self.check()?;
+            Ok(Box::new(OneByOne::new("aep", start, self.population, rules, self)?))
+        };
+        Some(run())
     }
 }

@@ -24,18 +24,29 @@ impl OneToOne {
     fn replaces<T: Scalar>(self, child: T, parent: T) -> bool {
         child < parent || (self == Self::AcceptEqual && child == parent)
     }
+
+    /// The contest in slot `i` alone.
+    #[inline]
+    pub(crate) fn compete<T: Scalar, I: Individual<T>>(
+        self,
+        parents: &mut Population<T, I>,
+        children: &mut Population<T, I>,
+        i: usize,
+    ) {
+        if self.replaces(children.costs[i], parents.costs[i]) {
+            let (from, to) = (parents.positions.row(i), children.positions.row(i));
+            children.individuals[i].won(from, to);
+            parents.take(i, children, i);
+        } else {
+            parents.individuals[i].survived();
+        }
+    }
 }
 
 impl<T: Scalar, I: Individual<T>> Selection<T, I> for OneToOne {
     fn select(&self, parents: &mut Population<T, I>, children: &mut Population<T, I>, _: Streams) {
         for i in 0..parents.len() {
-            if self.replaces(children.costs[i], parents.costs[i]) {
-                let (from, to) = (parents.positions.row(i), children.positions.row(i));
-                children.individuals[i].won(from, to);
-                parents.take(i, children, i);
-            } else {
-                parents.individuals[i].survived();
-            }
+            self.compete(parents, children, i);
         }
     }
 }

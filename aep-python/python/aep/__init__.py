@@ -14,6 +14,8 @@ from ._fleet import Fleet, discover_many
 from ._minimize import minimize
 from ._optimizer import Optimizer
 from ._result import Interrupted, Result, WorkersLost
+from ._steady import SteadyOptimizer
+from ._symbol import Untraceable
 from ._tasks import Task, tasks
 from ._trials import Trials, trials
 
@@ -34,9 +36,11 @@ __all__ = [
     "Optimizer",
     "OwnFound",
     "Result",
+    "SteadyOptimizer",
     "Task",
     "Term",
     "Trials",
+    "Untraceable",
     "WorkersLost",
     "__version__",
     "challenge",

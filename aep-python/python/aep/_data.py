@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from . import _aep
+from ._columns import columns_of
+from ._law import formula
 
 #: Quantities that can be read, as keywords of every function that takes data.
 ROLES = ("time", "force", "position", "velocity", "reference", "segment", "temperature", "enabled", "model_force")
@@ -22,7 +24,7 @@ READING = (*ROLES, *_UNITS, *_GAINS, "regressors", "interval", "topic", "hold", 
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect of your own: a law as a formula, simulated, screened and reported like those of the library.
+    """A physical effect of your own: a law as a formula or a function, simulated, screened and reported like those of the library.
 
     >>> cogging = Effect(
     ...     "cogging",
@@ -37,14 +39,37 @@ class Effect:
     ``force`` is what resists the motion (N or Nm); it sees position ``x``, velocity ``v``, acceleration ``a``, the sign of the
     velocity ``s``, time ``t``, the force of the drive ``F``, the parameters (which come first) and every column of the data,
     in SI. With ``level`` in place of ``force`` it adds to the level of friction. ``linear`` parameters are factors of the law.
+
+    In place of a formula stands a function with arguments of these names, on arrays of shape (n,), parameters as numbers:
+
+    >>> def law(x, v, a, p):
+    ...     return np.where(v > 0, a * np.sin(2 * np.pi * x / p), 0.0)
+    >>> limits = {"low": 1e-4, "high": 10, "default": 1}
+    >>> Effect("cogging", law, {"a": {"unit": "N", **limits}, "p": {"unit": "m", **limits}}).force
+    'if(v > 0, a*sin(6.283185307179586*x/p), 0)'
+
+    It is called once with symbols, and what it does becomes the formula, so that a search costs what a formula costs. Branches
+    are ``np.where``, tables ``np.interp``; what depends on other samples (a memory, a mean) is no law of one sample.
+
+    Raises
+    ------
+    aep.Untraceable
+        A ``ValueError``: the function does what formulas cannot; which line it is, and what to write in its place.
     """
 
     name: str
-    force: str | None = None
+    force: str | Callable[..., Any] | None = None
     parameters: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    level: str | None = None
+    level: str | Callable[..., Any] | None = None
     title: str = ""
     shows: str = ""
+
+    def __post_init__(self) -> None:
+        # As text from the beginning: it can be sent to other processes, and a report can say what was asked.
+        for slot in ("force", "level"):
+            law = getattr(self, slot)
+            if callable(law):
+                object.__setattr__(self, slot, formula(self.name, law, self.parameters))
 
     def to_toml(self) -> str:
         """As ``--effects-file`` of the command reads it."""
@@ -73,7 +98,8 @@ def load(data: Any, effects: Iterable[Effect | str | os.PathLike[str]] = (), **r
     ----------
     data
         A file, or several that are pieces of one measurement (CSV, MATLAB, Parquet, ``.npz``, ``.xlsx``, HDF5, MCAP); a
-        dictionary of arrays, shape (n,); a pandas or polars frame; or what this function returned before.
+        dictionary of arrays, shape (n,), or of whatever gives a buffer; a pandas or polars frame; a pyarrow table, or what else
+        has the Arrow interface; a NumPy array of records; or what this function returned before.
     effects
         Laws of your own: :class:`aep.Effect`, or files of the command's ``--effects-file``.
     reading
@@ -97,13 +123,13 @@ def load(data: Any, effects: Iterable[Effect | str | os.PathLike[str]] = (), **r
     how = _reading(reading, effects)
     if isinstance(data, (str, os.PathLike)):
         return _aep.Data.of_files([os.fspath(data)], how)
-    columns = _columns(data)
+    columns = columns_of(data)
     if columns is not None:
         return _aep.Data.of_columns("data", columns, how)
     if isinstance(data, Sequence) and data and all(isinstance(path, (str, os.PathLike)) for path in data):
         return _aep.Data.of_files([os.fspath(path) for path in data], how)
     raise TypeError(
-        f"data is {type(data).__name__}\n  give a file, several files, a dictionary of arrays, or a pandas or polars frame"
+        f"data is {type(data).__name__}\n  give a file, several files, a dictionary of arrays, a pandas or polars frame, or an Arrow table"
     )
 
 
@@ -132,27 +158,3 @@ def _reading(given: Mapping[str, Any], effects: Iterable[Effect | str | os.PathL
     return SimpleNamespace(
         mapping=json.dumps(mapping), effects=laws, **{"from": said.get("t_from"), "to": said.get("t_to"), "every": said.get("every")}
     )
-
-
-def _columns(data: Any) -> list[tuple[str, np.ndarray]] | None:
-    """The numeric columns of a dictionary or frame; None where it is neither."""
-    if isinstance(data, Mapping):
-        named = list(data.items())
-    elif hasattr(data, "columns") and hasattr(data, "__getitem__"):
-        named = [(name, data[name]) for name in data.columns]
-    else:
-        return None
-    columns = [(str(name), _numbers(values)) for name, values in named]
-    return [(name, values) for name, values in columns if values is not None]
-
-
-def _numbers(values: Any) -> np.ndarray | None:
-    """As doubles, a view where they are; None for what is no column of numbers."""
-    array = values.to_numpy() if hasattr(values, "to_numpy") else np.asarray(values)
-    if array.dtype.kind in "Mm":
-        # Dates count from the first one: only differences of times matter.
-        elapsed = array - array[:1] if array.dtype.kind == "M" else array
-        array = elapsed / np.timedelta64(1, "s")
-    if array.ndim != 1 or array.dtype.kind not in "fiub":
-        return None
-    return np.ascontiguousarray(array, dtype=np.float64)

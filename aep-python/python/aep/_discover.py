@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from inspect import signature
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +14,7 @@ from ._data import load
 from ._files import write
 from ._minimize import _raise
 from ._plots import Plots
-from ._result import Result
+from ._progress import Progress, listener
 
 
 class Found(Plots):
@@ -119,7 +119,7 @@ def discover(
     time_limit: float | None = 60.0,
     thresholds: Mapping[str, float] | None = None,
     bandwidth: float | None = None,
-    progress: Callable[[Result], Any] | None = None,
+    progress: Progress = None,
     **reading: Any,
 ) -> Found:
     """Find out which physical effect the model of a drive lacks, or that it lacks none.
@@ -149,7 +149,8 @@ def discover(
         As the flags of the command: ``time_limit`` in s, None for no limit; ``thresholds`` by their names in
         docs/decisions.md (``better``, ``chance``, ``beam``, ...); ``bandwidth`` in Hz.
     progress
-        Called while it runs with ``stage`` (``base-fitted``, ``screening``, ``compared``, ``finishing``) and its numbers.
+        Called while it runs with ``stage`` (``base-fitted``, ``screening``, ``compared``, ``finishing``) and its numbers; or a
+        bar such as ``tqdm.tqdm()``, which is moved on by one at each and told what it is.
 
     Returns
     -------
@@ -168,7 +169,7 @@ def discover(
     given = load(data, effects, **reading)
     other = None if validate is None else load(validate, effects, **reading)
     search = _search(base, model_gain, exclude, fix, bound, seed, alpha, time_limit, thresholds, bandwidth)
-    told = None if progress is None else lambda facts: progress(Result(facts))
+    told = listener(progress)
     found, raised = _aep.discover(given, search, other, int(surrogates), told)
     asked = dict(
         base=base, model_gain=model_gain, exclude=search.exclude, effects=effects, fix=fix, bound=bound, validate=validate,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from . import _aep
@@ -12,6 +12,7 @@ from ._data import load
 from ._discover import Found, _search, command, names
 from ._files import write
 from ._minimize import _raise
+from ._progress import Progress, listener
 from ._result import Result
 
 
@@ -61,7 +62,7 @@ def suggest(
     time_limit: float | None = 60.0,
     thresholds: Mapping[str, float] | None = None,
     bandwidth: float | None = None,
-    progress: Callable[[Result], Any] | None = None,
+    progress: Progress = None,
     **reading: Any,
 ) -> Found:
     """Suggest the effect that a model lacks, without adding it.
@@ -72,7 +73,7 @@ def suggest(
     effects = list(effects)
     given = load(data, effects, **reading)
     search = _search(None, None, exclude, fix, bound, seed, alpha, time_limit, thresholds, bandwidth)
-    told = None if progress is None else lambda facts: progress(Result(facts))
+    told = listener(progress)
     found, raised = _aep.suggest(given, _model(model), search, told)
     asked = dict(
         exclude=search.exclude, effects=effects, fix=fix, bound=bound, seed=seed, alpha=alpha, time_limit=time_limit,

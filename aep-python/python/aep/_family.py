@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +14,7 @@ import numpy as np
 from . import _aep
 from ._discover import Found, _search, names
 from ._minimize import _raise
-from ._result import Result
+from ._progress import Progress, listener
 
 #: The terms of a model with the values of their parameters.
 Model = Mapping[str, Mapping[str, float]]
@@ -109,7 +109,7 @@ def discover_own(
     alpha: float = 0.05,
     time_limit: float | None = 60.0,
     thresholds: Mapping[str, float] | None = None,
-    progress: Callable[[Result], Any] | None = None,
+    progress: Progress = None,
 ) -> OwnFound:
     """Find out which term a model of your own lacks, or that it lacks none.
 
@@ -149,7 +149,7 @@ def discover_own(
     # What is wrong with the family itself shows where it begins, and is raised there.
     subject.prediction({term.name: {p[0]: p[6] for p in term.parameters} for term in terms if term.always or term.name in names(base)})
     search = _search(names(base), None, exclude, None, None, seed, alpha, time_limit, thresholds, None)
-    told = None if progress is None else lambda facts: progress(Result(facts))
+    told = listener(progress)
     found, (count, first), raised = _aep.discover_own(subject, search, told)
     if count:
         warnings.warn(f"{count} predictions failed; the first: {type(first).__name__}: {first}", RuntimeWarning, stacklevel=2)

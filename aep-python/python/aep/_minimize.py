@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 
 from . import _aep
+from ._asynchronous import run
 from ._bounds import space
 from ._cost import Cost
+from ._progress import Bar, counter
 from ._result import Interrupted, Result
 from ._workers import Losses, evaluator
 
@@ -42,7 +44,8 @@ def minimize(
     workers: Any = 1,
     chunk: int | None = None,
     retries: int = 2,
-    callback: Callable[[Result], Any] | None = None,
+    asynchronous: bool = False,
+    callback: Callable[[Result], Any] | Bar | None = None,
     checkpoint: str | os.PathLike[str] | None = None,
     checkpoint_every: int = 10,
     resume: bool = False,
@@ -81,9 +84,15 @@ def minimize(
     retries
         How often evaluations are repeated whose worker died. With a number of processes a position that ends its process
         again after that, alone, counts as failed; elsewhere :class:`aep.WorkersLost` is raised, with what was found.
+    asynchronous
+        No individual waits for another one: a child is made as soon as the cost of the last one has come, so that a slow
+        evaluation holds up nobody. For costs whose times differ much, on workers that take one task at a time: a number of
+        processes, an executor, a pool with ``apply_async``. The same seed then no longer gives the same result, as that depends
+        on who is ready first. Methods whose children compete with their own parents: ``aep``, ``aep-practical``, ``de``,
+        ``de-fixed``. As many costs as there are individuals count as a generation; ``maxfun`` is kept to the evaluation.
     callback
         Called after each generation with ``x``, ``fun``, ``nfev``, ``nit``, ``failures``, ``elapsed`` (s). True or
-        ``StopIteration`` ends the run.
+        ``StopIteration`` ends the run. Or a bar such as ``tqdm.tqdm(total=maxfun)``, which is moved on by the evaluations.
     checkpoint, checkpoint_every, resume
         A file that keeps the run, every how many generations it is written, and whether to go on from it. A resumed run ends
         as the uninterrupted one would have, to the bit.
@@ -114,16 +123,27 @@ def minimize(
     elif resume:
         raise ValueError("resume needs the file of the run\n  give checkpoint=FILE")
     cost, losses = Cost(fun, args, vectorized, constraints, ceiling), Losses()
-    told = None if callback is None else lambda facts: _called(callback, facts)
+    heard: Any = counter(callback) if hasattr(callback, "update") else callback  # type: ignore[arg-type]
+    told = None if heard is None else lambda facts: _called(heard, facts)
+    if asynchronous:
+        if chunk not in (None, 1):
+            raise ValueError(f"chunk is {chunk}\n  an asynchronous run sends one position at a time: leave it out")
+        steady = _aep.Steady(box, method, population or 0, seed, initial(x0, box))
+        facts, raised = run(cost, steady, workers, retries, losses, limits, _identity(fun), kept, told)
+        return _ended(facts, raised, losses, box)
     with evaluator(cost, workers, chunk, retries, losses) as evaluate:
         facts, raised = _aep.minimize(
             box, _watched(evaluate), method, population or 0, seed, initial(x0, box), limits, _identity(fun), kept, told
         )
+    return _ended(facts, raised, losses, box)
+
+
+def _ended(facts: dict[str, Any], raised: BaseException | None, losses: Losses, box: _aep.Space) -> Result:
     result = _result(facts, losses, box)
     if raised is not None:
         _raise(raised, result)
     if result.failures["checkpoint"]:
-        warnings.warn(f"the checkpoint could not be written: {result.failures['checkpoint']}", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"the checkpoint could not be written: {result.failures['checkpoint']}", RuntimeWarning, stacklevel=3)
     return result
 
 

@@ -47,7 +47,7 @@ def evaluator(
     if workers is None or (isinstance(workers, int) and workers == 1):
         yield cost
     elif isinstance(workers, (int, np.integer)):
-        with _Processes(cost, _count(int(workers)), chunk, retries, losses) as processes:
+        with Processes(cost, count(int(workers)), chunk, retries, losses) as processes:
             yield processes
     elif hasattr(workers, "submit"):
         yield _Submitted(cost, workers, chunk, retries, losses)
@@ -60,7 +60,8 @@ def evaluator(
         )
 
 
-def _count(workers: int) -> int:
+def count(workers: int) -> int:
+    """The number of processes that ``workers`` asks for."""
     if workers == -1:
         return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if workers < 1:
@@ -159,7 +160,7 @@ def end(pool: ProcessPoolExecutor) -> None:
         process.terminate()
 
 
-class _Processes:
+class Processes:
     """By processes on this machine. The cost is sent to each of them once. A pool that breaks because a process died is made
     anew; positions that end their process each time, alone too, are failures."""
 
@@ -170,16 +171,17 @@ class _Processes:
         self.cost = cost if self.context.get_start_method() == "fork" else _packed(cost)
         self.pool: ProcessPoolExecutor | None = None
 
-    def __enter__(self) -> _Processes:
+    def __enter__(self) -> Processes:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._end()
+        self.end()
 
     def _begin(self, count: int) -> ProcessPoolExecutor:
         return ProcessPoolExecutor(count, mp_context=self.context, initializer=_take, initargs=(self.cost,))
 
-    def _end(self) -> None:
+    def end(self) -> None:
+        """Ends the pool at once; the next task begins another one."""
         if self.pool is not None:
             end(self.pool)
             self.pool = None
@@ -197,16 +199,22 @@ class _Processes:
                 return joined(answers)  # type: ignore[arg-type]
             if not isinstance(lost, BrokenExecutor):
                 raise lost
-            self._end()
+            self.end()
             missing = sum(len(piece) for piece, answer in zip(pieces, answers) if answer is None)
             how = "repeated" if attempt < self.retries else "repeated one by one"
             self.losses.tell(f"a worker process died; {missing} evaluations are {how}")
         for k, piece in enumerate(pieces):
             if answers[k] is None:
-                answers[k] = joined([self._alone(piece[j : j + 1]) for j in range(len(piece))])
+                answers[k] = joined([self.alone(piece[j : j + 1]) for j in range(len(piece))])
         return joined(answers)  # type: ignore[arg-type]
 
-    def _alone(self, point: np.ndarray) -> Evaluated:
+    def submit(self, points: np.ndarray) -> Future[Evaluated]:
+        """A task by itself, for who does not wait for a generation."""
+        if self.pool is None:
+            self.pool = self._begin(self.count)
+        return self.pool.submit(_evaluate, points)
+
+    def alone(self, point: np.ndarray) -> Evaluated:
         """A position in a process of its own."""
         with self._begin(1) as pool:
             try:
