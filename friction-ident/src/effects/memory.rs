@@ -27,6 +27,11 @@ pub trait Memory: Sync + Send {
         out: &mut Recalled<'_>,
     );
 
+    /// Whether it asks what is left of the static hump: [`Taken::hump`] is 1 where nobody does.
+    fn takes_hump(&self) -> bool {
+        false
+    }
+
     /// Takes a piece of motion into the state.
     fn remember(&self, _p: Parameters<'_>, _taken: &Taken<'_>, _state: &mut [f64]) {}
 

@@ -143,6 +143,10 @@ impl Memory for Bond {
         recall(p.get(0), m.dwell, left, formed, slides, out.bond);
     }
 
+    fn takes_hump(&self) -> bool {
+        true
+    }
+
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
         let (left, rest) = state.split_at_mut(taken.sliding.len());
         let (formed, slides) = rest.split_at_mut(taken.sliding.len());

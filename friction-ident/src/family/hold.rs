@@ -37,7 +37,8 @@ pub(super) fn decided(
     let with =
         |hold: Hold| FrictionFamily::as_recorded(&recording.clone().with_hold(hold), options);
     let (sampled, held) = (with(Hold::Sampled)?, with(Hold::ZeroOrder)?);
-    let (Some(a), Some(b)) = (likelihood(&sampled), likelihood(&held)) else { return Ok(sampled) };
+    let (a, b) = rayon::join(|| likelihood(&sampled), || likelihood(&held));
+    let (Some(a), Some(b)) = (a, b) else { return Ok(sampled) };
     let nats = (a - b).abs();
     let by_search = nats < CLEAR * recording.len() as f64;
     let chosen = |hold: Hold, family: FrictionFamily| FrictionFamily {

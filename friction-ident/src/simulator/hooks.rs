@@ -3,7 +3,7 @@
 use super::kernels::keep_positive;
 use super::plants::Plants;
 use crate::effects::{
-    Advance, Balance, Motion, Parameters, Recalled, Response, Smooth, Step, Taken,
+    Advance, Balance, Memory, Motion, Parameters, Recalled, Response, Smooth, Step, Taken,
 };
 use crate::simd::vectorised;
 
@@ -184,10 +184,13 @@ impl Plants {
     /// Takes the piece into the states of the memories.
     pub(super) fn remember(&mut self) {
         let Self { effects, memories, level, scratch: s, dwell, sliding, lanes, .. } = self;
-        for k in level.iter() {
-            let active = &effects[*k];
-            let p = Parameters::new(&active.values, *lanes);
-            active.effect.hump(p, &s.level_velocity, &mut s.hump);
+        let mut kept = memories.iter().filter_map(|k| effects[*k].effect.memory());
+        if kept.any(Memory::takes_hump) {
+            for k in level.iter() {
+                let active = &effects[*k];
+                let p = Parameters::new(&active.values, *lanes);
+                active.effect.hump(p, &s.level_velocity, &mut s.hump);
+            }
         }
         let taken = Taken {
             duration: &s.taken,

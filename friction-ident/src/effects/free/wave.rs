@@ -5,7 +5,7 @@ use crate::axis::Quantity;
 use crate::effects::{
     About, Effect, Motion, Parameter, Parameters, Periodic, Repeats, Slot, Smooth,
 };
-use crate::simd::sin_cos_of_turns;
+use crate::simd::{sin_cos_of_turns, vectorised};
 
 /// One harmonic over time.
 #[derive(Clone, Copy, Debug)]
@@ -38,11 +38,20 @@ impl Effect for ForceWave {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        for (i, force) in out.force.iter_mut().enumerate() {
+        swing(p, m.time, out.force);
+    }
+}
+
+vectorised! {
+    fn swing(p: Parameters<'_>, time: &[f64], force: &mut [f64]) {
+        let n = force.len();
+        let [begin, end, sine, cosine, period] = std::array::from_fn(|k| &p.get(k)[..n]);
+        let time = &time[..n];
+        for i in 0..n {
             // From the middle, so that a fit of the period leaves the phase alone.
-            let middle = 0.5 * (p.get(0)[i] + p.get(1)[i]);
-            let (sin, cos) = sin_cos_of_turns((m.time[i] - middle) / p.get(4)[i]);
-            *force += p.get(2)[i] * sin + p.get(3)[i] * cos;
+            let middle = 0.5 * (begin[i] + end[i]);
+            let (sin, cos) = sin_cos_of_turns((time[i] - middle) / period[i]);
+            force[i] += sine[i] * sin + cosine[i] * cos;
         }
     }
 }
