@@ -17,6 +17,9 @@ pub enum Ingredient {
     /// best one; in a population a child takes its own parent's place only (without: the better
     /// half of all parents and children stays).
     Contest,
+    /// The best position of a lineage that no longer becomes better is evaluated once more. Where its cost is another one,
+    /// age is told by the median of a generation, and there is no contest of lineages: the lowest cost is chance's.
+    Reevaluation,
     /// Negative weights: C shrinks along the steps of bad children.
     NegativeWeights,
     /// The quadratic model that takes the place of evaluations.
@@ -35,10 +38,11 @@ pub enum Ingredient {
 
 impl Ingredient {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Direction,
         Self::Age,
         Self::Contest,
+        Self::Reevaluation,
         Self::NegativeWeights,
         Self::Model,
         Self::Components,
@@ -53,6 +57,7 @@ impl Ingredient {
             Self::Direction => "direction",
             Self::Age => "age",
             Self::Contest => "contest",
+            Self::Reevaluation => "re-evaluation",
             Self::NegativeWeights => "negative-weights",
             Self::Model => "model",
             Self::Components => "components",

@@ -17,6 +17,8 @@ const FLAT: f64 = 1e-12;
 const LEAST_REACH: f64 = 1e-12;
 /// Limit of age in windows of costs.
 const MOST_AGE: usize = 3;
+/// Age, in generations, at which the lowest cost is doubted.
+const DOUBTED_AT: usize = 10;
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Lineage {
@@ -26,11 +28,15 @@ pub(super) struct Lineage {
     guess: Option<Guess>,
     /// The generation that is being evaluated.
     open: Option<Open>,
-    /// Lowest cost of the lineage.
+    /// Lowest level of the lineage, see [`level`].
     best: f64,
+    /// Position and cost of the lowest cost.
+    lowest: (Vec<f64>, f64),
+    /// Whether that has been evaluated once more.
+    repeated: bool,
     /// Generations since it became lower.
     age: usize,
-    /// Lowest cost of each generation, the latest ones.
+    /// Level of each generation, the latest ones.
     history: Vec<f64>,
     evaluations: u64,
     ended: bool,
@@ -74,6 +80,8 @@ pub(super) struct Setting<'a> {
     pub generation: u64,
     /// Lowest cost of all lineages.
     pub lowest: f64,
+    /// Whether the same position can have another cost.
+    pub noisy: bool,
 }
 
 impl Lineage {
@@ -86,6 +94,8 @@ impl Lineage {
             guess: models.then(Guess::default),
             open: None,
             best: f64::INFINITY,
+            lowest: (Vec::new(), f64::INFINITY),
+            repeated: false,
             age: 0,
             history: Vec::new(),
             evaluations: 0,
@@ -101,6 +111,23 @@ impl Lineage {
 
     pub fn ended(&self) -> bool {
         self.ended
+    }
+
+    /// The position of the lowest cost, and the cost, once that is to be doubted.
+    pub fn doubted(&self) -> Option<(&[f64], f64)> {
+        let (position, cost) = &self.lowest;
+        let old = self.age >= DOUBTED_AT && cost.is_finite();
+        (old && !self.repeated).then_some((position, *cost))
+    }
+
+    /// It has been evaluated once more; with `noisy` nothing that was judged by the lowest cost holds.
+    pub fn note_repeated(&mut self, noisy: bool) {
+        self.repeated = true;
+        if noisy {
+            self.best = f64::INFINITY;
+            self.age = 0;
+            self.history.clear();
+        }
     }
 
     /// The positions to be evaluated next, not yet mirrored into the domain.
@@ -193,10 +220,18 @@ impl Lineage {
         ration.earn(costs.len());
         for (child, cost) in open.waiting.drain(..costs.len()).zip(costs) {
             open.evaluated.push((child, *cost));
+            let better = *cost < self.lowest.1;
+            if !better && self.guess.is_none() {
+                continue;
+            }
+            let step = self.children.step(child, &self.distribution);
+            let position: Vec<f64> = self.distribution.position(step).collect();
             if let Some(guess) = &mut self.guess {
-                let step = self.children.step(child, &self.distribution);
-                let position: Vec<f64> = self.distribution.position(step).collect();
                 guess.note(&position, *cost);
+            }
+            if better {
+                self.lowest = (position, *cost);
+                self.repeated = false;
             }
         }
         match self.ranking(&mut open, ration) {
@@ -239,13 +274,13 @@ impl Lineage {
         order: &[usize],
     ) {
         let costs = || evaluated.iter().map(|(_, cost)| *cost);
-        let lowest = costs().fold(f64::INFINITY, f64::min);
-        self.age = if lowest < self.best { 0 } else { self.age + 1 };
-        self.best = self.best.min(lowest);
+        let level = level(costs(), setting.noisy);
+        self.age = if level < self.best { 0 } else { self.age + 1 };
+        self.best = self.best.min(level);
         let n = self.distribution.dimension();
         let window = 10 + 30 * n / self.lambda;
-        if lowest.is_finite() {
-            self.history.push(lowest);
+        if costs().any(f64::is_finite) {
+            self.history.push(level);
             if self.history.len() > window {
                 self.history.remove(0);
             }
@@ -285,9 +320,22 @@ impl Lineage {
         });
         let flat = high - low <= FLAT * low.abs().min(1.0);
         let behind = self.best.min(low) - setting.lowest;
-        let beaten = setting.config.uses(Ingredient::Contest) && high - low < behind;
+        // Noise alone makes costs differ.
+        let contest = setting.config.uses(Ingredient::Contest) && !setting.noisy;
+        let beaten = contest && high - low < behind;
         flat || beaten
     }
+}
+
+/// What a generation is judged by: its lowest cost. Under noise that is chance's, and the more so the longer a lineage lives;
+/// there it is the median.
+fn level(costs: impl Iterator<Item = f64>, noisy: bool) -> f64 {
+    if !noisy {
+        return costs.fold(f64::INFINITY, f64::min);
+    }
+    let mut costs: Vec<f64> = costs.filter(|cost| cost.is_finite()).collect();
+    costs.sort_unstable_by(f64::total_cmp);
+    costs.get(costs.len() / 2).copied().unwrap_or(f64::INFINITY)
 }
 
 impl Children {

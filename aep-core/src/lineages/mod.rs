@@ -12,6 +12,7 @@ mod ingredient;
 mod line;
 mod lineage;
 mod model;
+mod repeats;
 mod run;
 mod schedule;
 mod triangular;
@@ -36,6 +37,10 @@ use crate::{Algorithm, ConfigError, Method, Scalar, Start};
 ///   3 (10 + 30 n / lambda) the lineage ends and another begins.
 /// - **Contest**: a lineage that follows others is given up as soon as its costs differ by less than
 ///   it is behind the best of them.
+///
+/// **Noise.** Where the best position of a lineage that has aged has another cost when it is evaluated once more, age is told by
+/// the median of a generation from then on, and there is no contest. Where costs repeat, at most ten evaluations of a run are
+/// spent on that, and nothing else changes.
 ///
 /// To these come, each an [`Ingredient`] that can be left out: negative weights of bad children, a
 /// quadratic model of the cost that takes the place of evaluations while it ranks well, a search

@@ -9,6 +9,7 @@ use super::descents::Descents;
 use super::exchange::{Exchange, Verdict};
 use super::guess::Ration;
 use super::lineage::{Lineage, Setting};
+use super::repeats::Repeats;
 use super::schedule::{Next, Schedule};
 use super::{Ingredient, Lineages, NAME};
 use crate::best::BestSoFar;
@@ -45,6 +46,7 @@ struct State<T: Scalar> {
     phase: Phase,
     schedule: Schedule,
     ration: Ration,
+    repeats: Repeats,
     best: BestSoFar<T>,
     /// Where the problem has residuals.
     descents: Option<Box<Descents>>,
@@ -89,6 +91,7 @@ impl<T: Scalar> Run<T> {
                 phase: Phase::Initial,
                 schedule: Schedule::new(n, lambda),
                 ration: Ration::new(n),
+                repeats: Repeats::new(config.uses(Ingredient::Reevaluation)),
                 best: BestSoFar::new(n),
                 descents: None,
             },
@@ -215,7 +218,9 @@ impl<T: Scalar> Run<T> {
                 None
             }
             Phase::Lineage(lineage) => {
-                lineage.tell(setting, ration, costs);
+                let costs = self.state.repeats.compare(lineage, costs, epsilon);
+                let noisy = self.state.repeats.noisy();
+                lineage.tell(Setting { noisy, ..setting }, ration, costs);
                 let spent = lineage.evaluations();
                 let over = lineage.ended() || !self.state.schedule.allows(spent);
                 over.then_some(spent)
@@ -230,7 +235,8 @@ impl<T: Scalar> Run<T> {
 }
 
 fn setting<'a, T: Scalar>(config: &'a Lineages, seed: u64, state: &State<T>) -> Setting<'a> {
-    Setting { config, seed, generation: state.told, lowest: state.lowest() }
+    let noisy = state.repeats.noisy();
+    Setting { config, seed, generation: state.told, lowest: state.lowest(), noisy }
 }
 
 impl<T: Scalar> Algorithm<T> for Run<T> {
@@ -265,7 +271,10 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
                     exchange.ask(&mut streams.stream(0), drawn);
                 }
                 Phase::Components(search) => search.ask(drawn),
-                Phase::Lineage(lineage) => lineage.ask(setting, ration, drawn),
+                Phase::Lineage(lineage) => {
+                    lineage.ask(setting, ration, drawn);
+                    drawn.extend_from_slice(self.state.repeats.asked(lineage));
+                }
                 Phase::Population(companions) => companions.ask(drawn),
             }
             self.place();

@@ -28,8 +28,14 @@ enum Kind {
 }
 
 /// Methods of Python, by their names here and there.
-pub const PYTHON: [(&str, &str); 2] =
-    [("pycma", "pycma BIPOP"), ("scipy-de", "scipy differential_evolution")];
+pub const PYTHON: [(&str, &str); 4] = [
+    ("pycma", "pycma BIPOP"),
+    ("scipy-de", "scipy differential_evolution"),
+    ("scipy-annealing", "scipy dual_annealing"),
+    (ONLY_NAMED, "nevergrad NGOpt"),
+];
+/// Takes milliseconds of its own for each evaluation: runs where it is asked for by name only.
+pub const ONLY_NAMED: &str = "ngopt";
 
 impl Contestant {
     pub fn named(name: &str, pool: &Arc<Pool>) -> Result<Self> {

@@ -21,7 +21,7 @@ use benches::python::Pool;
 use clap::Parser;
 use coco_rs::LogLevel;
 
-use contestant::{Contestant, PYTHON};
+use contestant::{Contestant, ONLY_NAMED, PYTHON};
 use suite::{Kind, Plan};
 
 type Result<T> = std::result::Result<T, Box<dyn Error>>;
@@ -32,14 +32,14 @@ struct Arguments {
     /// Folder of the tables.
     #[arg(default_value = "bbob")]
     folder: PathBuf,
-    /// Methods of `aep_core::methods`, and the peers `cmaes-crate`, `fcmaes-cma`, `pycma` and `scipy-de`; without it all that can
-    /// work on the suite.
+    /// Methods of `aep_core::methods`, and the peers `cmaes-crate`, `fcmaes-cma`, `pycma`, `scipy-de`, `scipy-annealing` and `ngopt`;
+    /// without it all that can work on the suite, but `ngopt`, which takes days.
     #[arg(long, value_delimiter = ',')]
     methods: Vec<String>,
     /// Which functions.
     #[arg(long, value_enum, default_value = "bbob")]
     suite: Kind,
-    /// Python with numpy, scipy and cma, for its methods.
+    /// Python with numpy, scipy, cma and nevergrad, for its methods.
     #[arg(long, default_value = "python3")]
     python: String,
     /// In place of `--methods`: aep-lineages, whole and without each of its ingredients (there are no residuals here).
@@ -77,8 +77,9 @@ fn main() -> Result<()> {
         let cubes = CUBES.into_iter().filter(|_| suite != Kind::Mixint);
         let all = || OURS.into_iter().chain(cubes).map(str::to_owned);
         let mut names = arguments.methods;
-        let is_asked =
-            |(here, _): &&(&str, &str)| names.is_empty() || names.contains(&(*here).into());
+        let is_asked = |(here, _): &&(&str, &str)| {
+            names.contains(&(*here).into()) || names.is_empty() && *here != ONLY_NAMED
+        };
         let asked: Vec<_> = PYTHON.iter().filter(is_asked).collect();
         let (pool, installed) =
             if asked.is_empty() { Pool::none() } else { Pool::new(&arguments.python) };
