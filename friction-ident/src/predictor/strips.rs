@@ -95,7 +95,7 @@ mod tests {
     fn a_strip_runs_in_from_where_the_axis_moves_fastest() {
         let time = time(4000, 5e-3);
         let speed = |k: usize| if k == 1750 { 2.0 } else { 1.0 };
-        let teams = teams(&[0..4000], &time, speed);
+        let teams = teams(std::slice::from_ref(&(0..4000)), &time, speed);
         assert_eq!(teams.len(), 1);
         let strip = &teams[0][1];
         assert_eq!((strip.from, strip.tells.clone()), (1750, 1950..4000));
