@@ -166,9 +166,22 @@ impl<T: Scalar> Run<T> {
         costs.iter().map(usable).collect()
     }
 
+    /// How many of the positions asked are evaluated once more.
+    fn once_more(&self) -> usize {
+        match &self.state.phase {
+            Phase::Lineage(lineage) => {
+                self.state.repeats.asked(lineage).len() / self.domain.dimension()
+            }
+            _ => 0,
+        }
+    }
+
     /// Takes costs into the search.
     fn search(&mut self, costs: &[f64]) {
+        let children = costs.len() - self.once_more();
         if let Some(descents) = &mut self.state.descents {
+            // Whose turn it is does not depend on what is evaluated once more.
+            let costs = &costs[..children];
             let best = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b]));
             let best = best.filter(|best| costs[*best].is_finite()).map(|best| {
                 let mut search = vec![T::zero(); self.domain.dimension()];
