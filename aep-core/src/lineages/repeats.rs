@@ -53,7 +53,8 @@ impl Repeats {
     fn note(&mut self, first: f64, again: f64, epsilon: f64) {
         // A sum in another order is no noise.
         let allowed = 1e5 * epsilon * first.abs();
-        self.noisy = !((again - first).abs() <= allowed);
+        let same = (again - first).abs() <= allowed;
+        self.noisy = !same;
         self.left = if self.noisy { 0 } else { self.left - 1 };
     }
 }
