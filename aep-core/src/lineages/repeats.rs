@@ -53,8 +53,8 @@ impl Repeats {
     fn note(&mut self, first: f64, again: f64, epsilon: f64) {
         // A sum in another order is no noise.
         let allowed = 1e5 * epsilon * first.abs();
-        let apart = (again - first).abs();
-        self.noisy = apart > allowed || apart.is_nan();
+        let same = (again - first).abs() <= allowed;
+        self.noisy = !same;
         self.left = if self.noisy { 0 } else { self.left - 1 };
     }
 }
