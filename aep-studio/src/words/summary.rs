@@ -57,9 +57,10 @@ fn verdict(discovery: &Discovery, budget: &Budget) -> String {
         ),
         Verdict::Stopped => STOPPED.to_owned(),
         Verdict::EffectsFound | Verdict::Ambiguous => format!(
-            "{}: {}. With it the prediction error falls from {:.2} to {:.2} times what the sensors make{}.",
+            "{}: {}. With {} the prediction error falls from {:.2} to {:.2} times what the sensors make{}.",
             if discovery.stopped { "Found so far" } else { "Missing" },
             discovery.added.join(", "),
+            if discovery.added.len() > 1 { "them" } else { "it" },
             budget.base,
             budget.last,
             shown(discovery)
@@ -156,6 +157,12 @@ mod tests {
             "Missing: stribeck. With it the prediction error falls from 9.00 to 1.05 times what the sensors make, that of \
              the force from 5.00 % to 2.00 %."
         );
+    }
+
+    #[test]
+    fn several_effects_are_them() {
+        let said = summary(&discovery(&[("added", json!(["stribeck", "drift"]))]));
+        assert!(said.starts_with("Missing: stribeck, drift. With them the prediction"), "{said}");
     }
 
     #[test]
