@@ -57,15 +57,20 @@ pub static RIVALS: [Free; 5] = [
     Free {
         effect: &ForceOverTime,
         title: "a force that varies freely with time",
-        is_kin: |_| false,
+        is_kin: is_constant,
     },
     Free {
         effect: &ForceOverPosition,
         title: "a force that varies freely along the stroke",
-        is_kin: |effect| effect.is_of_place(),
+        is_kin: |effect| effect.is_of_place() || is_constant(effect),
     },
     Free { effect: &ForceWave, title: "a force that repeats itself over time", is_kin: |_| false },
 ];
+
+/// Whether a force is the same everywhere and always: a course without a bend.
+fn is_constant(effect: &dyn Effect) -> bool {
+    effect.about().name == "offset"
+}
 
 /// Share of the recording over which a step rises: a fit has to feel where it is.
 const RISE: f64 = 0.005;
@@ -300,6 +305,16 @@ mod tests {
             let place = Point::at(time, 0.1);
             assert!((smooth(&ForceOverPosition, &p, place).0 - exact).abs() < 1e-12, "{time}");
         }
+    }
+
+    #[test]
+    fn a_constant_force_is_a_shape_of_one_that_is_free_and_of_no_level() {
+        let kin = |effect: &dyn Effect| -> Vec<&str> {
+            let of = RIVALS.iter().filter(|free| (free.is_kin)(effect));
+            of.map(|free| free.effect.about().name).collect()
+        };
+        assert_eq!(kin(&super::super::Offset), ["force-over-time", "force-over-position"]);
+        assert_eq!(kin(&super::super::Coulomb), [""; 0]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod grow;
 mod outdone;
 mod rivals;
 mod shape;
+mod simpler;
 mod usual;
 
 use std::collections::BTreeSet;
@@ -170,7 +171,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// Goes on to the best set of effects.
     pub fn finish(mut self, mut climb: Climb) -> Found {
-        let best = self.grown(&mut climb);
+        let mut best = self.grown(&mut climb);
+        if !self.is_complete(&best) {
+            best = self.beside_usual(&mut climb, best);
+        }
+        let best = self.simplified(&climb, best);
         let mut best = self.usual_instead(&climb, best);
         let mut rival = None;
         loop {
@@ -220,7 +225,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             while !climb.ended && climb.nodes.len() <= self.thresholds.most {
                 self.grow(climb);
             }
-            let best = self.size(climb);
+            let best = self.size(climb, climb.base.clone(), 0);
             let (needed, costs) = self.prune(climb, best);
             let size = costs.len();
             let known = |set: &Node| self.key(set) == self.key(&needed);
@@ -294,6 +299,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// Whether a model leaves no more than the sensors make, as far as one number tells.
     pub fn is_complete(&self, node: &Node) -> bool {
         self.budget(node) <= self.thresholds.complete
+    }
+
+    /// Whether a model explains all that the base errs beyond what the sensors make.
+    fn explains(&self, base: &Node, node: &Node) -> bool {
+        self.budget(base) > 1.0 && self.budget(node) <= 1.0
     }
 
     /// Terms of a node that the base does not have, in the order of the model.

@@ -36,8 +36,10 @@ pub struct Found {
     pub gains: Vec<Difference>,
     /// What the last model loses without each of the terms added.
     pub costs: Vec<Difference>,
-    /// Sets of added terms that predict as well as the ones found.
-    pub as_good: Vec<Vec<usize>>,
+    /// Sets of added terms by their number, and how far each lies behind the best of it, nats.
+    pub sets: Vec<Vec<(Vec<usize>, f64)>>,
+    /// The most that anything gains beside what is named, but has no name itself, nats.
+    pub unnamed: f64,
     /// Candidates beside the best set of each size.
     pub ranking: Vec<Ranked>,
     /// Chance of a gain as large as what the last model would lose without it, for each effect.
@@ -72,7 +74,8 @@ impl Found {
             added: Vec::new(),
             gains: Vec::new(),
             costs: Vec::new(),
-            as_good: Vec::new(),
+            sets: Vec::new(),
+            unnamed: 0.0,
             ranking: Vec::new(),
             p_values: Vec::new(),
             chance: Chance::default(),
@@ -117,6 +120,25 @@ impl Found {
         };
         self.base = whole(&self.base.model);
         self.rungs = self.rungs.par_iter().map(|rung| whole(&rung.model)).collect();
+        // With a term more a model can do no worse: a part leads astray where it does not reach.
+        for k in 0..self.rungs.len() {
+            let below = k.checked_sub(1).map_or(&self.base, |k| &self.rungs[k]);
+            let rung = &self.rungs[k];
+            if rung.foretells_more(below) {
+                continue;
+            }
+            let form = rung.model.terms.iter().position(|t| main(*t) == main(self.added[k]));
+            let Some(form) = form else { continue };
+            let values = &rung.model.values[rung.model.range(family, form)];
+            // Each at the setting that suits it: else the one that was looked for longer gains by that.
+            let below = fitter.settled(below.clone(), IN_FULL);
+            let start = below.model.with(rung.model.terms[form], values);
+            let again = fitter.refit(start, below.setting, IN_FULL);
+            if again.foretells_more(rung) {
+                *k.checked_sub(1).map_or(&mut self.base, |k| &mut self.rungs[k]) = below;
+                self.rungs[k] = again;
+            }
+        }
         while let Some(top) = self.rungs.last() {
             if stop() {
                 return None;
@@ -146,6 +168,7 @@ impl Found {
             }
             let Some((idle, refusal)) = goes else { break };
             let term = self.added.remove(idle);
+            self.unnamed = self.unnamed.max(self.costs.get(idle).map_or(0.0, |cost| cost.nats));
             let effect = family.terms()[term].name.clone();
             self.remarks.push(match refusal {
                 Some(refusal) => Remark::NotNamed { effects: vec![effect], refusal },
@@ -158,7 +181,6 @@ impl Found {
                 above.par_iter().filter_map(|rung| without(rung, term)).collect::<Vec<_>>(),
             );
             self.rungs = rungs;
-            self.as_good.clear();
         }
         if self.rungs.is_empty() {
             self.costs.clear();
@@ -267,8 +289,22 @@ impl Found {
         self.added.clear();
         self.gains.clear();
         self.costs.clear();
-        self.as_good.clear();
         self.p_values.clear();
+    }
+
+    /// Sets of added terms that cannot be told from the one that was found: they predict as well to what an effect must
+    /// gain, or to what gains as much without being an effect. What is wrong with one model may gain that, too.
+    pub fn as_good<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        thresholds: &Thresholds,
+    ) -> Vec<&[usize]> {
+        let sets = self.sets.get(self.added.len()).map_or(&[][..], Vec::as_slice);
+        let is_it = |set: &[usize]| self.added.iter().all(|t| Self::is_in(set, *t, family));
+        let Some((_, found)) = sets.iter().find(|(set, _)| is_it(set)) else { return Vec::new() };
+        let near = thresholds.better.max(self.unnamed);
+        let others = sets.iter().filter(|(set, lag)| !is_it(set) && lag - found < near);
+        others.map(|(set, _)| set.as_slice()).collect()
     }
 
     /// Whether a term, in whatever form, is among `terms`.
@@ -346,7 +382,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::ahead::testing::{BEAT, Plant, TONE, WAVE};
+    use crate::ahead::testing::{BEAT, Plant, TONE, TWIN, WAVE};
     use crate::report::Fault;
 
     /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
@@ -552,5 +588,19 @@ mod tests {
         assert_eq!(told.gains, [Difference { nats: 120.0, error: 12.0 }]);
         assert_eq!(told.costs, told.gains);
         assert_eq!(told.remarks, [Remark::Unconfirmed { share: 0.25 }]);
+    }
+
+    #[test]
+    fn sets_are_told_apart_by_more_than_what_gains_as_much_without_a_name() {
+        let (plant, found) = found(None);
+        let thresholds = Thresholds { better: 20.0, ..Thresholds::default() };
+        let sets = vec![Vec::new(), vec![(vec![TWIN], 0.0), (vec![WAVE], 5.0), (vec![BEAT], 45.0)]];
+        let as_good = |unnamed: f64| {
+            let found = Found { sets: sets.clone(), unnamed, ..found.clone() };
+            found.as_good(&plant, &thresholds).concat()
+        };
+        assert_eq!(as_good(0.0), [TWIN]);
+        assert_eq!(as_good(39.0), [TWIN]);
+        assert_eq!(as_good(41.0), [TWIN, BEAT]);
     }
 }

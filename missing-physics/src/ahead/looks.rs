@@ -198,25 +198,24 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         let Some((there, nats)) = there else {
             return (here.reading, here.search.finish(here.climb));
         };
-        let other = there.reading;
-        let better = thresholds.in_part(other.searched().share()).better;
-        if reading::nats(there.climb.top(), here.climb.top(), better) > nats {
-            return (other, there.search.finish(there.climb));
-        }
-        let mut found = here.search.finish(here.climb);
+        let better = thresholds.in_part(there.reading.searched().share()).better;
+        let turned = reading::nats(there.climb.top(), here.climb.top(), better) > nats;
+        let (first, second) = if turned { (there, here) } else { (here, there) };
+        let mut found = first.search.finish(first.climb);
         if stop() && !found.added.is_empty() {
             found.stopped = true;
             found.remarks.push(Remark::OtherReadingUnasked);
-            return (here.reading, found);
+            return (first.reading, found);
         }
+        let other = second.reading;
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
         if reading::needs_less(&found, other.family, &fitter, better) {
-            let second = there.search.finish(there.climb);
-            if reading::nats(second.top(), found.top(), better) > 0.0 {
-                return (other, second);
+            let less = second.search.finish(second.climb);
+            if reading::nats(less.top(), found.top(), better) > 0.0 {
+                return (other, less);
             }
         }
-        (here.reading, found)
+        (first.reading, found)
     }
 }
 

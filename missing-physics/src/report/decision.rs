@@ -42,6 +42,8 @@ pub enum Reason {
     PlainForm,
     /// The candidate has what every system of its kind has in the place of an effect.
     Usual,
+    /// The candidate has a simpler effect in the place of one.
+    Simpler,
     /// Something that stands for no effect was asked.
     Rival {
         /// What it is.

@@ -9,11 +9,10 @@ use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The best set, of the smallest size that is needed.
-    pub(super) fn size(&mut self, climb: &Climb) -> Node {
+    /// The best set, of the smallest size that is needed, from one of `known` effects on.
+    pub(super) fn size(&mut self, climb: &Climb, mut best: Node, known: usize) -> Node {
         let base = &climb.base;
-        let mut best = base.clone();
-        for (size, sets) in climb.nodes.iter().enumerate().skip(1) {
+        for (size, sets) in climb.nodes.iter().enumerate().skip(known + 1) {
             let top = &sets[0];
             let gain = self.comparison.compare(&best, top).nats;
             let near = self.thresholds.clear(gain);
@@ -105,6 +104,19 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         rival: Option<Remains>,
     ) -> Found {
         let base = climb.base.clone();
+        let by_chance = |cost: &(_, Difference, _)| self.p_value(&beside, cost.1);
+        let mut p_values: Vec<f64> = costs.iter().map(by_chance).collect();
+        if let Some(last) = p_values.last_mut() {
+            *last = last.max(least);
+        }
+        // What every system has comes after what is needed as much.
+        let clear = self.thresholds.clear(self.comparison.compare(&base, last).nats);
+        let needed = |(term, cost, _): &(usize, Difference, Node)| {
+            cost.nats - if self.family.is_usual(*term) { clear } else { 0.0 }
+        };
+        let mut told: Vec<_> = costs.into_iter().zip(p_values).collect();
+        told.sort_by(|a, b| needed(&b.0).total_cmp(&needed(&a.0)));
+        let (costs, p_values): (Costs, Vec<f64>) = told.into_iter().unzip();
         // Forms may have changed since the costs were taken.
         let order: Vec<usize> = costs.iter().map(|(term, ..)| self.main(*term)).collect();
         let mut added: Vec<usize> = Vec::new();
@@ -126,23 +138,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let before = if k == 0 { &base } else { &rungs[k - 1] };
             gains.push(self.comparison.compare(before, rung));
         }
-        let as_good = climb
-            .nodes
-            .get(added.len())
-            .into_iter()
-            .flatten()
-            .filter(|set| self.key(set) != self.key(last))
-            .filter(|set| self.comparison.compare(set, last).nats < self.thresholds.better)
-            .map(|set| Self::added(&base, set))
-            .collect();
+        let sets = self.behind(&climb, last);
+        let unnamed = self.in_full(self.unnamed(&climb, last));
         let stopped = (self.stop)();
         for promise in &mut beside.promises {
             promise.leverage = promise.leverage.map(|leverage| self.in_full(leverage));
-        }
-        let by_chance = |cost: &(_, Difference, _)| self.p_value(&beside, cost.1);
-        let mut p_values: Vec<f64> = costs.iter().map(by_chance).collect();
-        if let Some(last) = p_values.last_mut() {
-            *last = last.max(least);
         }
         let mut decisions = std::mem::take(&mut self.decisions);
         let names = self.names(last);
@@ -158,7 +158,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             added,
             gains,
             costs: costs.into_iter().map(|(_, cost, _)| cost).collect(),
-            as_good,
+            sets,
+            unnamed,
             ranking: climb.ranking,
             p_values,
             chance: beside.chance,
@@ -173,5 +174,35 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         };
         found.place(self.family, self.ahead, &self.thresholds);
         found
+    }
+
+    /// The sets of every size, and how far each lies behind the best of them; the last model among those of its own.
+    fn behind(&self, climb: &Climb, last: &Node) -> Vec<Vec<(Vec<usize>, f64)>> {
+        let base = &climb.base;
+        let known = self.key(last);
+        let mut all = Vec::new();
+        for (size, sets) in climb.nodes.iter().enumerate() {
+            let last = Some(last).filter(|last| Self::added(base, last).len() == size);
+            let others = sets.iter().filter(|set| last.is_none() || self.key(set) != known);
+            let sets: Vec<&Node> = last.into_iter().chain(others).collect();
+            let Some(first) = sets.iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
+                all.push(Vec::new());
+                continue;
+            };
+            let lag = |set: &Node| self.in_full(self.comparison.compare(set, first).nats);
+            all.push(sets.iter().map(|set| (Self::added(base, set), lag(set))).collect());
+        }
+        all
+    }
+
+    /// The most that anything gains beside the last model without being named.
+    fn unnamed(&self, climb: &Climb, last: &Node) -> f64 {
+        let known = self.key(last);
+        let sets = climb.nodes.iter().flatten().chain(climb.refused.iter().map(|(set, _)| set));
+        let beside = sets.filter(|set| {
+            let key = self.key(set);
+            key.len() == known.len() + 1 && key.is_superset(&known)
+        });
+        beside.map(|set| self.comparison.compare(last, set).nats).fold(0.0, f64::max)
     }
 }

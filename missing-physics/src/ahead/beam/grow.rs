@@ -154,7 +154,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         // The first order seldom promises less than half of what a fit gains.
         let least = if size == 1 {
-            (PROMISING.0 * self.thresholds.better).clamp(PROMISING.1, PROMISING.2)
+            self.promising()
         } else {
             0.5 * self.thresholds.clear(self.comparison.compare(base, from).nats)
         };
@@ -211,6 +211,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let shaped = shaped
             .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
         (shaped.collect(), screened)
+    }
+
+    /// What a candidate must promise to be fitted where the first order errs most, nats.
+    pub(super) fn promising(&self) -> f64 {
+        (PROMISING.0 * self.thresholds.better).clamp(PROMISING.1, PROMISING.2)
     }
 
     /// The effects that promise most: those that are looked at again.

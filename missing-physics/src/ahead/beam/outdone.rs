@@ -2,7 +2,8 @@
 //!
 //! What ends at a limit, or lost what makes it that effect, is not named. It still shows how much of the error as few
 //! effects can foretell. Where those that would be named in its place foretell less, they imitate a part of what is
-//! missing and are not its cause. Effects that the refused model has, too, stay. And where nothing else was found, but a
+//! missing and are not its cause, unless they leave no more than the sensors make: then nothing is left that they do not
+//! foretell. Effects that the refused model has, too, stay. And where nothing else was found, but a
 //! refused model foretells what the base errs beyond the sensors, something is missing.
 
 use super::{Climb, Search};
@@ -16,6 +17,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     pub(super) fn outdone(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
         let base = &climb.base;
         let added = Self::added(base, last);
+        if self.explains(base, last) {
+            return None;
+        }
         let is_rival = |refused: &Node| {
             if added.is_empty() {
                 return !leaves_most(base, refused, self.ahead.budget());

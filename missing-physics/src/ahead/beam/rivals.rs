@@ -70,7 +70,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let free = self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2));
         // Of more effects, and beside some that leave something, some may be needed beside it.
         let all = added.is_empty() || (added.len() <= 2 && self.is_complete(last));
-        if all && !self.does_as_much(last, &free, added.len(), rival) {
+        if all && !self.does_as_much(base, last, &free, added.len(), rival) {
             return None;
         }
         // Beside what leaves nothing nothing is needed.
@@ -80,7 +80,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             self.needed_beside(base, last, &free, rival)
         };
         let gone = added.len() - kept.len();
-        if !added.is_empty() && !self.does_as_much(last, &beside, gone, rival) {
+        if !added.is_empty() && !self.does_as_much(base, last, &beside, gone, rival) {
             return None;
         }
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
@@ -88,7 +88,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let shapes = [kept.as_slice(), &kin].concat();
             let alone = self.only(base, last, &shapes);
             let clear = self.thresholds.clear(self.comparison.compare(base, &beside).nats);
-            if self.comparison.compare(&alone, &beside).nats <= clear {
+            if self.explains(base, &alone) || self.comparison.compare(&alone, &beside).nats <= clear
+            {
                 kept = shapes;
             }
         }
@@ -114,15 +115,18 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// none.
     pub(super) fn does_as_much(
         &mut self,
+        base: &Node,
         last: &Node,
         with: &Node,
         instead_of: usize,
         rival: &Rival,
     ) -> bool {
         let by = self.comparison.compare(last, with);
-        let better = self.thresholds.better;
-        let needed = if instead_of > 1 { -better } else { better };
-        let outcome = if by.nats > needed { Outcome::Rival } else { Outcome::Worse };
+        let clear = self.thresholds.clear(self.comparison.compare(base, with).nats);
+        let needed = if instead_of > 1 { -clear } else { clear };
+        let leaves_more = self.is_complete(last) && !self.is_complete(with);
+        let does = by.nats > needed && !leaves_more;
+        let outcome = if does { Outcome::Rival } else { Outcome::Worse };
         self.note(instead_of, with, last, by, outcome, Some(because(rival)));
         outcome == Outcome::Rival
     }

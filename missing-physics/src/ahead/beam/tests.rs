@@ -2,6 +2,7 @@ mod conclude;
 mod grow;
 mod rivals;
 mod shape;
+mod simpler;
 mod usual;
 
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -3,12 +3,16 @@
 //! An effect that varies another one has parameters to stand for it: beside a base without a friction level a drift of
 //! that level is the level, too, and gains more. So the other one is asked in its place, and stays where it does as much
 //! (the principle of marginality: J. A. Nelder, 1977).
+//!
+//! And what every system has may hide another effect, or show only beside it: a spring that is at rest elsewhere than at
+//! zero is a spring and a constant force, and neither alone foretells anything. So before it is said that no effect
+//! explains what is missing, the search begins once more beside the usual effects.
 
 use super::{Climb, STEPS, Search, negative};
 use crate::ahead::fit;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 use crate::report::{Outcome, Reason};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
@@ -18,7 +22,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             if self.family.is_usual(term) {
                 continue;
             }
-            let Some(usual) = self.with_usual(&best, term) else { continue };
+            let without = best.model.without(self.family, term);
+            let Some(usual) = self.with_usual(without, best.setting) else { continue };
             let loss = self.comparison.compare(&usual, &best);
             let as_good = loss.nats < self.thresholds.better;
             let outcome = if as_good { Outcome::Added } else { Outcome::Worse };
@@ -32,10 +37,41 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         best
     }
 
-    /// The model without a term and with every usual effect that it lacks; nothing where it lacks none.
-    fn with_usual(&self, node: &Node, term: usize) -> Option<Node> {
-        let without = node.model.without(self.family, term);
-        let mut found = fit::evaluated(self.ahead, without, node.setting);
+    /// The best set of effects from the base with every usual one, where that is better; the climb is the one that led there.
+    pub(super) fn beside_usual(&mut self, climb: &mut Climb, best: Node) -> Node {
+        let base = &climb.base;
+        let Some(usual) = self.with_usual(base.model.clone(), base.setting) else { return best };
+        let size = Self::added(base, &usual).len();
+        if climb.nodes.iter().flatten().any(|set| self.key(set) == self.key(&usual)) {
+            return best;
+        }
+        let mut again = Climb {
+            base: base.clone(),
+            nodes: climb.nodes.iter().take(size).cloned().collect(),
+            ranking: climb.ranking.iter().take(size).cloned().collect(),
+            screened: climb.screened.clone(),
+            refused: climb.refused.clone(),
+            beam: vec![usual.clone()],
+            ended: false,
+        };
+        again.nodes.resize(size, Vec::new());
+        again.nodes.push(vec![usual.clone()]);
+        while !again.ended && again.nodes.len() <= self.thresholds.most {
+            self.grow(&mut again);
+        }
+        let found = self.size(&again, usual, size);
+        let (found, _) = self.prune(&again, found);
+        let by = self.comparison.compare(&best, &found);
+        if by.nats <= self.thresholds.clear(self.comparison.compare(&climb.base, &found).nats) {
+            return best;
+        }
+        *climb = again;
+        found
+    }
+
+    /// A model with every usual effect that it lacks; nothing where it lacks none.
+    fn with_usual(&self, model: Fitted, setting: usize) -> Option<Node> {
+        let mut found = fit::evaluated(self.ahead, model, setting);
         let mut any = false;
         loop {
             let usual = self.candidates.iter().copied().filter(|&t| self.family.is_usual(t));

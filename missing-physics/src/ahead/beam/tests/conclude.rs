@@ -2,6 +2,10 @@
 
 use super::*;
 
+fn sized(search: &mut Search<'_, Plant>, climb: &Climb) -> Node {
+    search.size(climb, climb.base.clone(), 0)
+}
+
 const BOTH_HIDDEN: [(usize, &[f64]); 2] = [(WAVE, &[0.2]), (BEAT, &[0.005])];
 
 #[test]
@@ -11,7 +15,7 @@ fn of_sets_that_predict_alike_the_one_with_fewer_parameters_stands() {
     let (more, fewer) =
         (node(&plant, &[wave, (TONE, &[1e-6, 5.0])]), node(&plant, &[wave, (PUSH, &[1e-6])]));
     for sets in [vec![more.clone(), fewer.clone()], vec![fewer, more]] {
-        let best = search(&plant, narrow()).size(&climb(&plant, vec![sets]));
+        let best = sized(&mut search(&plant, narrow()), &climb(&plant, vec![sets]));
         assert_eq!(best.model.terms, [0, WAVE, PUSH]);
     }
 }
@@ -20,7 +24,7 @@ fn of_sets_that_predict_alike_the_one_with_fewer_parameters_stands() {
 fn a_set_with_fewer_parameters_does_not_stand_where_it_predicts_worse() {
     let plant = Plant::new(1, &[(WAVE, &[0.05])]);
     let sets = vec![node(&plant, &[(WAVE, &[0.05])]), node(&plant, &[])];
-    let best = search(&plant, narrow()).size(&climb(&plant, vec![sets]));
+    let best = sized(&mut search(&plant, narrow()), &climb(&plant, vec![sets]));
     assert_eq!(best.model.terms, [0, WAVE]);
 }
 
@@ -30,7 +34,7 @@ fn a_further_effect_must_gain_a_share_of_what_all_of_them_do() {
     let sizes = || vec![vec![node(&plant, &BOTH_HIDDEN[..1])], vec![node(&plant, &BOTH_HIDDEN)]];
     for (share, effects) in [(0.0, 2), (0.2, 1)] {
         let mut search = search(&plant, Thresholds { share, ..narrow() });
-        let best = search.size(&climb(&plant, sizes()));
+        let best = sized(&mut search, &climb(&plant, sizes()));
         assert_eq!(best.effects(&plant).len(), effects, "{:?}", search.decisions);
         let last = search.decisions.last().unwrap();
         let outcome = if effects == 2 { Outcome::Added } else { Outcome::TooLittle };
@@ -107,4 +111,20 @@ fn where_pruning_comes_to_a_set_that_no_size_had_the_search_goes_on_from_there()
     assert_eq!(grown(set(&[(BOTH, &[0.12]), (WAVE, &[0.08])])), [WAVE, BEAT, TONE]);
     // Where a size had it, what comes after it is known.
     assert_eq!(grown(set(&hidden[..2])), [WAVE, BEAT]);
+}
+
+#[test]
+fn what_every_plant_has_is_told_after_what_is_needed_as_much() {
+    let all = [(WAVE, &[0.05][..]), (BEAT, &[0.05])];
+    let told = |usual: &[usize], share: f64| {
+        let mut plant = Plant::new(3, &all);
+        plant.usual = usual.to_vec();
+        let mut search = search(&plant, Thresholds { share, ..narrow() });
+        let climb = climb(&plant, Vec::new());
+        let (last, costs) = search.prune(&climb, node(&plant, &all));
+        search.conclude(climb, &last, (costs, 0.0), Screened::default(), None).added
+    };
+    let order = told(&[], 0.0);
+    assert_eq!(told(&order[..1], 0.0), order, "one is needed more");
+    assert_eq!(told(&order[..1], 1.0), [order[1], order[0]]);
 }

@@ -37,8 +37,9 @@ fn a_rival_must_predict_better_than_one_effect_and_as_well_as_several() {
     let rival = Rival { term: RIVAL, title: "a wave less a beat", kin: Vec::new() };
     let (last, with) = (node(&one, &[(WAVE, &[0.05])]), node(&one, &[(TWIN, &[0.05])]));
     let mut search = search(&one, Thresholds { better: 1e4, ..narrow() });
-    assert!(!search.does_as_much(&last, &with, 1, &rival));
-    assert!(search.does_as_much(&last, &with, 2, &rival));
+    let base = node(&one, &[]);
+    assert!(!search.does_as_much(&base, &last, &with, 1, &rival));
+    assert!(search.does_as_much(&base, &last, &with, 2, &rival));
 }
 
 /// What a refused set does to the last model.
@@ -118,4 +119,22 @@ fn a_refused_set_takes_nothing_back_that_it_is_another_way_to_write() {
     assert!(outdone(&plant, &[push], &[wave]).is_some());
     plant.related = Some((WAVE, PUSH));
     assert!(outdone(&plant, &[push], &[wave]).is_none(), "related");
+}
+
+#[test]
+fn what_explains_all_that_the_sensors_do_not_is_not_outdone() {
+    let all: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
+    let plant = Plant::new(13, &all);
+    let push: (usize, &[f64]) = (PUSH, &[0.01]);
+    let mut climb = climb(&plant, Vec::new());
+    let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
+    climb.refused.push((node(&plant, &all[..1]), refusal));
+    let mut last = node(&plant, &[push]);
+    let mut search = search(&plant, Thresholds { share: 0.0, ..narrow() });
+    assert!(search.outdone(&climb, &last).is_some());
+    last.scale = 0.99 * crate::ahead::testing::NOISE;
+    assert!(search.outdone(&climb, &last).is_none());
+    // Where there was nothing beyond the sensors nothing is explained.
+    climb.base.scale = last.scale;
+    assert!(search.outdone(&climb, &last).is_some());
 }

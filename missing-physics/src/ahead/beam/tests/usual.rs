@@ -24,3 +24,32 @@ fn an_effect_stays_where_the_usual_ones_do_less() {
     // Nothing usual is missing.
     assert_eq!(among_three(&[TONE], &[(BOTH, &[0.3])]), ([BOTH].into(), false));
 }
+
+#[test]
+fn before_nothing_explains_it_the_usual_effects_are_given() {
+    let hidden: [(usize, &[f64]); 2] = [(PUSH, &[0.1]), (WAVE, &[0.1])];
+    for (usual, known, found) in [
+        (vec![PUSH], None, vec![PUSH, WAVE]),
+        (vec![], None, vec![]),
+        // The search has been there.
+        (vec![PUSH], Some(node(&Plant::new(5, &hidden), &hidden[..1])), vec![]),
+    ] {
+        let mut plant = Plant::new(5, &hidden);
+        plant.usual = usual;
+        let mut climb = climb(&plant, known.into_iter().map(|set| vec![set]).collect());
+        let base = climb.base.clone();
+        let best = search(&plant, narrow()).beside_usual(&mut climb, base);
+        assert_eq!(best.effects(&plant), found);
+        assert_eq!(climb.nodes.len(), if found.is_empty() { climb.nodes.len() } else { 3 });
+    }
+}
+
+#[test]
+fn with_the_usual_effects_alone_nothing_is_explained_that_was_not_before() {
+    let mut plant = Plant::new(5, &[(WAVE, &[0.1])]);
+    plant.usual = vec![PUSH];
+    let mut climb = climb(&plant, Vec::new());
+    let wave = node(&plant, &[(WAVE, &[0.1])]);
+    let best = search(&plant, narrow()).beside_usual(&mut climb, wave);
+    assert_eq!((best.effects(&plant), climb.nodes.len()), (vec![WAVE], 1));
+}

@@ -1,0 +1,27 @@
+//! Simpler effects in the place of others.
+
+use super::*;
+
+fn simplified(hidden: &[(usize, &[f64])], found: &[(usize, &[f64])]) -> Vec<usize> {
+    let plant = Plant::new(6, hidden);
+    let mut search = search(&plant, narrow());
+    search.simplified(&climb(&plant, Vec::new()), node(&plant, found)).effects(&plant)
+}
+
+#[test]
+fn an_effect_of_fewer_parameters_that_shows_beside_another_takes_the_place_of_what_imitates_it() {
+    let push: (usize, &[f64]) = (PUSH, &[0.05]);
+    let (beat, tone): ((usize, &[f64]), (usize, &[f64])) = ((BEAT, &[0.05]), (TONE, &[0.01, 5.0]));
+    assert_eq!(simplified(&[push, beat], &[push, tone]), [PUSH, BEAT]);
+    assert_eq!(
+        simplified(&[push, (TONE, &[0.05, 5.0])], &[push, (TONE, &[0.05, 5.0])]),
+        [PUSH, TONE]
+    );
+    // Of as many parameters another one is no simpler.
+    assert_eq!(simplified(&[push, beat], &[push, (WAVE, &[0.01])]), [PUSH, WAVE]);
+}
+
+#[test]
+fn a_single_effect_was_compared_with_the_others_when_it_was_found() {
+    assert_eq!(simplified(&[(BEAT, &[0.05])], &[(TONE, &[0.01, 5.0])]), [TONE]);
+}
