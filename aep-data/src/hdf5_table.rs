@@ -10,6 +10,8 @@ use crate::table::{Column, Table, nearest};
 
 /// Most columns of a matrix that become columns of their own.
 const MOST_COLUMNS: u64 = 64;
+/// Most values that a byte of a file can stand for: what deflate makes of one value of a byte, repeated.
+const DENSEST: u64 = 1032;
 /// Most levels of groups within groups.
 const DEEPEST: usize = 8;
 
@@ -37,9 +39,10 @@ impl Hdf5Table {
     pub fn parse(path: &Path, bytes: Vec<u8>) -> Result<Self, DataError> {
         let damaged =
             |what: String| DataError::new(path, Problem::Damaged { format: "HDF5 file", what });
+        let most = DENSEST * bytes.len() as u64;
         let file = File::from_bytes(bytes).map_err(|error| damaged(error.to_string()))?;
         let (mut entries, mut others) = (Vec::new(), Vec::new());
-        list(&file.root(), "", 0, &mut entries, &mut others)
+        list(&file.root(), ("", 0), most, &mut entries, &mut others)
             .map_err(|error| damaged(error.to_string()))?;
         without_common_group(&mut entries);
         Ok(Self { path: path.to_owned(), file, entries, others })
@@ -61,15 +64,15 @@ fn without_common_group(entries: &mut [Entry]) {
 
 fn list(
     group: &Group,
-    prefix: &str,
-    depth: usize,
+    (prefix, depth): (&str, usize),
+    most: u64,
     entries: &mut Vec<Entry>,
     others: &mut Vec<String>,
 ) -> Result<(), hdf5_pure::Error> {
     for name in group.datasets()? {
         let full = format!("{prefix}{name}");
         let dataset = group.dataset(&name)?;
-        match shape(&dataset) {
+        match shape(&dataset, most) {
             Ok((rows, columns, by_columns)) => {
                 for k in 0..columns {
                     let own = if columns == 1 { full.clone() } else { format!("{full}_{k}") };
@@ -87,14 +90,16 @@ fn list(
     for name in group.groups()? {
         // MATLAB keeps what cells and objects refer to in groups of its own.
         if !name.starts_with('#') && depth < DEEPEST {
-            list(&group.group(&name)?, &format!("{prefix}{name}/"), depth + 1, entries, others)?;
+            let prefix = format!("{prefix}{name}/");
+            list(&group.group(&name)?, (&prefix, depth + 1), most, entries, others)?;
         }
     }
     Ok(())
 }
 
-/// Rows and columns of a dataset, and whether values of a column follow one another; else what it is.
-fn shape(dataset: &Dataset) -> Result<(usize, usize, bool), String> {
+/// Rows and columns of a dataset of at most so many values, and whether values of a column follow one another; else what it
+/// is.
+fn shape(dataset: &Dataset, most: u64) -> Result<(usize, usize, bool), String> {
     let unreadable = |error: hdf5_pure::Error| error.to_string();
     let class = match dataset.attrs().map_err(unreadable)?.get("MATLAB_class") {
         Some(AttrValue::AsciiString(class) | AttrValue::String(class)) => Some(class.clone()),
@@ -136,6 +141,10 @@ fn shape(dataset: &Dataset) -> Result<(usize, usize, bool), String> {
             return Err(sizes.join(" x "));
         }
     };
+    // What is told is reserved before it is read.
+    if rows.checked_mul(columns).is_none_or(|values| values > most) {
+        return Err(format!("damaged: {rows} x {columns} values, more than its file can hold"));
+    }
     Ok((rows as usize, columns as usize, class.is_some()))
 }
 

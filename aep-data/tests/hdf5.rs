@@ -54,6 +54,24 @@ fn axes_of_a_plain_file_are_columns_of_its_matrices() {
 }
 
 #[test]
+fn more_values_than_a_file_can_hold_are_told_and_not_reserved() {
+    let bytes = std::fs::read(fixture("v73.mat")).unwrap();
+    let mapping = Mapping { position: Source::column("q_1"), ..Mapping::default() };
+    let places = bytes.windows(8).enumerate().filter(|(_, size)| **size == 40u64.to_le_bytes());
+    let places: Vec<usize> = places.map(|(place, _)| place).collect();
+    let mut told = 0;
+    for place in places {
+        for rows in [1u64 << 42, u64::MAX] {
+            let mut bytes = bytes.clone();
+            bytes[place..place + 8].copy_from_slice(&rows.to_le_bytes());
+            let read = parse(Path::new("run.mat"), bytes, &mapping);
+            told += usize::from(read.is_err_and(|e| e.to_string().contains("can hold")));
+        }
+    }
+    assert!(told > 0);
+}
+
+#[test]
 fn a_file_that_ends_early_or_is_damaged_is_told_and_never_a_panic() {
     let bytes = std::fs::read(fixture("v73.mat")).unwrap();
     let mapping = Mapping { position: Source::column("q_1"), ..Mapping::default() };

@@ -1,6 +1,8 @@
 //! Many inputs for one target.
 
 use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{Seek, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -67,6 +69,7 @@ pub struct Campaign {
     limits: Limits,
     ask: Sender<Vec<u8>>,
     answers: Receiver<Answer>,
+    last: Option<Mutex<File>>,
 }
 
 /// What an input did, and the memory that it needed, bytes.
@@ -106,7 +109,21 @@ impl Campaign {
                 }
             }
         });
-        Self { target, limits, ask, answers }
+        Self { target, limits, ask, answers, last: None }
+    }
+
+    /// One that keeps the last input in a file: memory that cannot be had ends the process.
+    #[must_use]
+    pub fn keeping_last(self, file: File) -> Self {
+        Self { last: Some(Mutex::new(file)), ..self }
+    }
+
+    fn keep(&self, input: &[u8]) -> std::io::Result<()> {
+        let Some(last) = &self.last else { return Ok(()) };
+        let mut file = last.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        file.rewind()?;
+        file.write_all(input)?;
+        file.set_len(input.len() as u64)
     }
 
     /// Tries one input: what came of it, or why none may do that. After a hang the campaign is over.
@@ -114,6 +131,9 @@ impl Campaign {
     /// # Errors
     /// The cause.
     pub fn tried(&self, input: &[u8]) -> Result<String, Cause> {
+        if let Err(error) = self.keep(input) {
+            eprintln!("the last input is not kept: {error}");
+        }
         if self.ask.send(input.to_vec()).is_err() {
             return Err(Cause::Hang);
         }

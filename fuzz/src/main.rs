@@ -1,4 +1,5 @@
-//! Looks for inputs that panic, hang or need too much memory.
+//! Looks for inputs that panic, hang or need too much memory. One that ends the process stands in `fuzz-TARGET-last` in the
+//! system's folder for temporary files.
 
 use std::time::Duration;
 
@@ -30,8 +31,11 @@ fn main() -> anyhow::Result<()> {
     println!("{:<12} {:>12} {:>9} {:>9}", "target", "executions", "outcomes", "findings");
     let mut found = false;
     for target in targets {
-        let ended =
-            Campaign::new(target, Limits::default()).run(arguments.seed, |_, spent| spent >= time);
+        let last = std::env::temp_dir().join(format!("fuzz-{}-last", target.name));
+        let campaign =
+            Campaign::new(target, Limits::default()).keeping_last(std::fs::File::create(&last)?);
+        let ended = campaign.run(arguments.seed, |_, spent| spent >= time);
+        std::fs::remove_file(&last)?;
         println!(
             "{:<12} {:>12} {:>9} {:>9}",
             target.name,
