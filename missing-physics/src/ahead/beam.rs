@@ -301,9 +301,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.budget(node) <= self.thresholds.complete
     }
 
-    /// Whether a model explains all that the base errs beyond what the sensors make.
+    /// Whether a model explains all that a base errs which is not complete.
     fn explains(&self, base: &Node, node: &Node) -> bool {
-        self.budget(base) > 1.0 && self.budget(node) <= 1.0
+        !self.is_complete(base) && self.budget(node) <= 1.0
     }
 
     /// Terms of a node that the base does not have, in the order of the model.

@@ -2,9 +2,9 @@
 //!
 //! What ends at a limit, or lost what makes it that effect, is not named. It still shows how much of the error as few
 //! effects can foretell. Where those that would be named in its place foretell less, they imitate a part of what is
-//! missing and are not its cause, unless they leave no more than the sensors make: then nothing is left that they do not
-//! foretell. Effects that the refused model has, too, stay. And where nothing else was found, but a
-//! refused model foretells what the base errs beyond the sensors, something is missing.
+//! missing and are not its cause, unless with them a base that is not complete errs no more than the sensors make: then
+//! nothing is left that they do not foretell. Effects that the refused model has, too, stay. And where nothing else was
+//! found, but a refused model foretells what the base errs beyond the sensors, something is missing.
 
 use super::{Climb, Search};
 use crate::ahead::found::leaves_most;

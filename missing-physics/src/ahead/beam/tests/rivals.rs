@@ -134,7 +134,7 @@ fn what_explains_all_that_the_sensors_do_not_is_not_outdone() {
     assert!(search.outdone(&climb, &last).is_some());
     last.scale = 0.99 * crate::ahead::testing::NOISE;
     assert!(search.outdone(&climb, &last).is_none());
-    // Where there was nothing beyond the sensors nothing is explained.
-    climb.base.scale = last.scale;
+    // Of a base that is complete there is nothing to explain.
+    climb.base.scale = 1.2 * crate::ahead::testing::NOISE;
     assert!(search.outdone(&climb, &last).is_some());
 }
