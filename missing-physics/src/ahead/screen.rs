@@ -2,7 +2,7 @@
 
 use super::chance::{Chance, Changed};
 use super::node::Node;
-use super::{Ahead, Trial, fit, statistics};
+use super::{Ahead, Trial, fit, scales, statistics};
 use crate::family::{Fitted, ModelFamily};
 use crate::statistics::basis::{Basis, constrained, dot, gram, weighed};
 use rayon::prelude::*;
@@ -93,13 +93,17 @@ impl<'a> Screening<'a> {
         let scale = node.weighing(ahead.expected(node.setting)) * shrunk;
         let weight: Vec<f64> =
             node.innovations.iter().map(|e| statistics::weight(e / scale).sqrt() / scale).collect();
+        let mut left = weighed(&node.innovations, &weight);
+        // What the model's own parameters cannot do, since they are at a limit, is open to others.
         let own: Vec<Vec<f64>> = node
             .jacobian(family, ahead)
             .iter()
             .map(|column| weighed(&node.law.left(column, ahead.instants()), &weight))
+            .zip(scales::of(family, &node.model))
+            .filter(|(column, moved)| !moved.is_held(-dot(column, &left)))
+            .map(|(column, _)| column)
             .collect();
         let own = Basis::of(&own);
-        let mut left = weighed(&node.innovations, &weight);
         own.project_out(&mut left);
         Self { node, ahead, scale, weight, own, left }
     }
@@ -356,13 +360,25 @@ mod tests {
     use super::*;
     use crate::ahead::compare::Comparison;
     use crate::ahead::fit::{Fitter, evaluated};
-    use crate::ahead::testing::{BEAT, BOTH, PUSH, Plant, TONE, WAVE};
+    use crate::ahead::testing::{BEAT, BOTH, PUSH, Plant, TONE, TWIN, WAVE};
 
     const ALL: [usize; 5] = [WAVE, BEAT, BOTH, TONE, PUSH];
     const WEAK: f64 = 2e-3;
 
     fn base(plant: &Plant) -> Node {
         Fitter::new(plant, plant).fit(Plant::model(&[]), 0, 8)
+    }
+
+    #[test]
+    fn what_a_parameter_cannot_do_at_its_limit_is_promised_to_another_effect() {
+        // A wave is at most 10.
+        let promised = |own: f64| {
+            let plant = Plant::new(3, &[(WAVE, &[own + WEAK])]);
+            let from = evaluated(&plant, Plant::model(&[(WAVE, &[own])]), 0);
+            screen(&plant, &plant, &from, &[TWIN], false).promises[0].gain
+        };
+        assert!(promised(9.0) < 1.0, "{}", promised(9.0));
+        assert!(promised(10.0) > 10.0, "{}", promised(10.0));
     }
 
     #[test]
