@@ -10,10 +10,12 @@ use std::hint::black_box;
 use aep_core::Aep;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use friction_ident::challenge::{self, Hide, Level};
+use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{
     Axis, MeasuredMotion, Model, Plants, Start, WindowOptions, columns_along, force_along, paper,
     window_errors,
 };
+use missing_physics::{Fitted, ModelFamily};
 
 /// Steps of one run.
 const STEPS: usize = 2000;
@@ -282,6 +284,39 @@ fn windows(c: &mut Criterion) {
     group.finish();
 }
 
+/// Models predicted one sample ahead along a challenge of 20 s, on one thread: pieces of the recording in strips beside each other,
+/// so that several models take little longer than one. The throughput printed is predictions per second.
+fn predictions(c: &mut Criterion) {
+    let made = challenge::generate(&Hide::Nothing, 1, Level::Clear).expect("a challenge");
+    let family = FrictionFamily::new(&made.recording, &Options::default()).expect("a family");
+    let ahead = family.ahead().expect("it is predicted one sample ahead");
+    let terms: Vec<usize> = (0..family.terms().len())
+        .filter(|k| {
+            let term = &family.terms()[*k];
+            term.always || ["coulomb", "viscous", "stribeck"].contains(&term.name.as_str())
+        })
+        .collect();
+    let values = terms.iter().flat_map(|k| family.terms()[*k].parameters.iter().map(|p| p.start));
+    let model = Fitted { values: values.collect(), terms };
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let mut group = c.benchmark_group("one sample ahead");
+    group.sample_size(10);
+    for count in [1, 5, 16] {
+        let models: Vec<(Fitted, usize)> = (0..count)
+            .map(|k| {
+                let mut model = model.clone();
+                model.values[0] *= 1.0 + 0.01 * k as f64;
+                (model, 2)
+            })
+            .collect();
+        group.throughput(Throughput::Elements((count * ahead.instants().len()) as u64));
+        group.bench_function(format!("models/{count}"), |b| {
+            b.iter(|| one_thread.install(|| ahead.errors(black_box(&models))));
+        });
+    }
+    group.finish();
+}
+
 /// The paper's identification: 8 parameters, 8,000 samples, 40 individuals, 250 generations; on all
 /// cores.
 fn identification(c: &mut Criterion) {
@@ -296,5 +331,13 @@ fn identification(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, simulators, effects, force_along_a_motion, windows, identification);
+criterion_group!(
+    benches,
+    simulators,
+    effects,
+    force_along_a_motion,
+    windows,
+    predictions,
+    identification
+);
 criterion_main!(benches);

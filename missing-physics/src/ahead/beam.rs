@@ -175,11 +175,17 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         if !self.is_complete(&best) {
             best = self.beside_usual(&mut climb, best);
         }
-        let best = self.simplified(&climb, best);
         let mut best = self.usual_instead(&climb, best);
-        let mut rival = None;
+        let (mut simplest, mut rival) = (false, None);
         loop {
             let (needed, costs) = self.prune(&climb, best);
+            if !simplest {
+                simplest = true;
+                if let Some(simpler) = self.simplified(&climb, &needed, &costs) {
+                    best = simpler;
+                    continue;
+                }
+            }
             let last = self.plainest(needed, &costs);
             if let Some((term, refusal)) = refused(self.family, self.ahead, &climb.base, &last) {
                 // Its last fit took it there.

@@ -27,7 +27,7 @@ const HOPELESS: f64 = 0.5;
 const FIRST: usize = 2;
 const COMPARABLE: f64 = 0.1;
 /// Share of what would bring a set that lags to the front which a candidate beside it must promise.
-const CATCHES_UP: f64 = 0.05;
+pub(super) const CATCHES_UP: f64 = 0.05;
 /// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
 const AGAIN: usize = 8;
 

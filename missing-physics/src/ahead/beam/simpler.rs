@@ -4,7 +4,8 @@
 //! An effect that shows only beside another one stays behind the one that imitates both: a spring that is at rest elsewhere
 //! than at zero behind the bend of a pendulum. So the simpler ones are asked in the place of each effect of the last set.
 
-use super::{Climb, STEPS, Search};
+use super::grow::CATCHES_UP;
+use super::{Climb, Costs, STEPS, Search};
 use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
 use crate::ahead::screen::screen;
@@ -12,31 +13,46 @@ use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The set with simpler effects in the place of others, where those do as much.
-    pub(super) fn simplified(&mut self, climb: &Climb, mut best: Node) -> Node {
-        let added = Self::added(&climb.base, &best);
-        for term in added.iter().filter(|_| added.len() > 1) {
-            if let Some(simpler) = self.in_the_place_of(climb, &best, *term) {
-                best = simpler;
+    /// The set with simpler effects in the place of others, where those do as much; nothing where none does. `costs` has the
+    /// models without each.
+    pub(super) fn simplified(&mut self, climb: &Climb, set: &Node, costs: &Costs) -> Option<Node> {
+        let mut best = None;
+        for (term, cost, without) in costs.iter().filter(|_| costs.len() > 1) {
+            // Beside what took the place of another one the model without it is another.
+            let again = best.as_ref().map(|best: &Node| {
+                let form = best.model.terms.iter().find(|t| self.main(**t) == self.main(*term));
+                let model = best.model.without(self.family, *form.unwrap_or(term));
+                self.refit(&model, best.setting, STEPS.1)
+            });
+            let without = again.as_ref().unwrap_or(without);
+            let from = best.as_ref().unwrap_or(set);
+            if let Some(simpler) = self.in_the_place_of(climb, from, (*term, cost.nats), without) {
+                best = Some(simpler);
             }
         }
         best
     }
 
-    fn in_the_place_of(&mut self, climb: &Climb, best: &Node, term: usize) -> Option<Node> {
-        let parameters = |t: usize| self.family.terms()[t].parameters.len();
-        let open: Vec<usize> =
-            self.candidates.iter().copied().filter(|t| parameters(*t) < parameters(term)).collect();
-        if open.is_empty() || (self.stop)() {
+    fn in_the_place_of(
+        &mut self,
+        climb: &Climb,
+        best: &Node,
+        (term, cost): (usize, f64),
+        without: &Node,
+    ) -> Option<Node> {
+        if (self.stop)() {
             return None;
         }
-        let model = best.model.without(self.family, term);
-        let without = self.refit(&model, best.setting, STEPS.1);
-        let joins = |term: &usize| self.family.joins(&without.model, *term);
-        let open: Vec<usize> = open.into_iter().filter(joins).collect();
-        let screened = screen(self.family, self.ahead, &without, &open, false);
-        let least = self.promising();
+        let parameters = |t: usize| self.family.terms()[t].parameters.len();
+        let simpler = |t: &usize| parameters(*t) < parameters(term);
+        let open = self.candidates.iter().copied().filter(simpler);
+        let open: Vec<usize> = open.filter(|t| self.family.joins(&without.model, *t)).collect();
+        if open.is_empty() {
+            return None;
+        }
+        let screened = screen(self.family, self.ahead, without, &open, false);
         let clear = self.thresholds.clear(self.comparison.compare(&climb.base, best).nats);
+        let least = self.promising().max(CATCHES_UP * (cost - clear));
         let size = Self::added(&climb.base, best).len();
         for start in self.chosen(&screened.promises, least, self.thresholds.beam) {
             let other = self.begun(start, without.setting)?;

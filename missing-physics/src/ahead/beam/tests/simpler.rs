@@ -2,10 +2,19 @@
 
 use super::*;
 
+/// The effects of a set after simpler ones were asked in the place of each.
 fn simplified(hidden: &[(usize, &[f64])], found: &[(usize, &[f64])]) -> Vec<usize> {
     let plant = Plant::new(6, hidden);
     let mut search = search(&plant, narrow());
-    search.simplified(&climb(&plant, Vec::new()), node(&plant, found)).effects(&plant)
+    let set = node(&plant, found);
+    let costs = (0..found.len()).map(|k| {
+        let others = [&found[..k], &found[k + 1..]].concat();
+        let without = search.refit(&Plant::model(&others), 0, STEPS.1);
+        (found[k].0, search.comparison.compare(&without, &set), without)
+    });
+    let costs: Costs = costs.collect();
+    let simpler = search.simplified(&climb(&plant, Vec::new()), &set, &costs);
+    simpler.unwrap_or(set).effects(&plant)
 }
 
 #[test]
