@@ -3,7 +3,8 @@
 //! What ends at a limit, or lost what makes it that effect, is not named. It still shows how much of the error as few
 //! effects can foretell. Where those that would be named in its place foretell less, they imitate a part of what is
 //! missing and are not its cause, unless with them a base that is not complete errs no more than the sensors make: then
-//! nothing is left that they do not foretell. Effects that the refused model has, too, stay. And where nothing else was
+//! nothing is left that they do not foretell. Effects that the refused model has, too, stay, unless it goes on from all of
+//! them and what it does beyond them is the greater part: then they are a smaller part of something else. And where nothing else was
 //! found, but a refused model foretells what the base errs beyond the sensors, something is missing.
 
 use super::{Climb, Search};
@@ -24,7 +25,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             if added.is_empty() {
                 return !leaves_most(base, refused, self.ahead.budget());
             }
-            Self::added(base, refused).len() <= added.len() && !self.stands_for(refused, last)
+            let fewer = Self::added(base, refused).len() <= added.len();
+            if fewer {
+                !self.stands_for(refused, last)
+            } else {
+                self.is_lesser_part(base, last, refused)
+            }
         };
         let (refused, refusal, by) = climb
             .refused
@@ -33,6 +39,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .map(|(node, refusal)| (node, refusal, self.comparison.compare(last, node)))
             .max_by(|a, b| a.2.nats.total_cmp(&b.2.nats))?;
         let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
+        let more = Self::added(base, refused).len() > added.len();
         let outcome = if by.nats > clear { Outcome::Rival } else { Outcome::Worse };
         let because = Some(Reason::Refused { refusal: refusal.clone() });
         self.note(added.len(), refused, last, by, outcome, because);
@@ -41,7 +48,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         let others = self.key(refused);
         let (kept, gone): (Vec<usize>, Vec<usize>) =
-            added.iter().partition(|term| others.contains(&self.main(**term)));
+            added.iter().partition(|term| !more && others.contains(&self.main(**term)));
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
         let found = Remains::Outdone {
             by: self.named(&Self::added(base, refused)),
@@ -50,6 +57,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             nats: self.in_full(by.nats),
         };
         Some((result, found))
+    }
+
+    /// Whether a refused model goes on from all effects of one that leaves something, and does the greater part of what
+    /// both do to the squared error.
+    fn is_lesser_part(&self, base: &Node, node: &Node, refused: &Node) -> bool {
+        let square = |node: &Node| self.budget(node).powi(2);
+        let goes_on = self.key(refused).is_superset(&self.key(node));
+        let greater = square(node) - square(refused) > square(base) - square(node);
+        !self.is_complete(node) && goes_on && greater
     }
 
     /// Whether a refused model is another way to write one: it has the same effects, or would have in the form that it

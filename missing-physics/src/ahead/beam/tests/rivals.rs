@@ -138,3 +138,20 @@ fn what_explains_all_that_the_sensors_do_not_is_not_outdone() {
     climb.base.scale = 1.2 * crate::ahead::testing::NOISE;
     assert!(search.outdone(&climb, &last).is_some());
 }
+
+#[test]
+fn a_refused_set_that_goes_on_from_what_was_found_takes_it_back_where_it_does_the_greater_part() {
+    let parts = |wave: f64, beat: f64| {
+        let hidden: [(usize, &[f64]); 2] = [(WAVE, &[wave]), (BEAT, &[beat])];
+        let plant = Plant::new(16, &hidden);
+        let mut climb = climb(&plant, Vec::new());
+        let refusal = Refusal::AtLimit { parameter: "beat.size".into() };
+        climb.refused.push((node(&plant, &hidden), refusal));
+        let found = search(&plant, narrow()).outdone(&climb, &node(&plant, &hidden[..1]));
+        found.map(|(without, _)| without.effects(&plant))
+    };
+    assert_eq!(parts(0.02, 0.2), Some(vec![]), "the wave is the smaller part");
+    assert_eq!(parts(0.2, 0.02), None);
+    // Where nothing is left nothing is a part of something else.
+    assert_eq!(parts(0.001, 0.002), None);
+}
