@@ -313,8 +313,11 @@ mod tests {
             let of = RIVALS.iter().filter(|free| (free.is_kin)(effect));
             of.map(|free| free.effect.about().name).collect()
         };
-        assert_eq!(kin(&super::super::Offset), ["force-over-time", "force-over-position"]);
-        assert_eq!(kin(&super::super::Coulomb), [""; 0]);
+        assert_eq!(
+            kin(&crate::effects::offset::Offset),
+            ["force-over-time", "force-over-position"]
+        );
+        assert_eq!(kin(&crate::effects::coulomb::Coulomb), [""; 0]);
     }
 
     #[test]

@@ -20,7 +20,8 @@ fn simplified(hidden: &[(usize, &[f64])], found: &[(usize, &[f64])]) -> Vec<usiz
 #[test]
 fn an_effect_of_fewer_parameters_that_shows_beside_another_takes_the_place_of_what_imitates_it() {
     let push: (usize, &[f64]) = (PUSH, &[0.05]);
-    let (beat, tone): ((usize, &[f64]), (usize, &[f64])) = ((BEAT, &[0.05]), (TONE, &[0.01, 5.0]));
+    let beat: (usize, &[f64]) = (BEAT, &[0.05]);
+    let tone: (usize, &[f64]) = (TONE, &[0.01, 5.0]);
     assert_eq!(simplified(&[push, beat], &[push, tone]), [PUSH, BEAT]);
     assert_eq!(
         simplified(&[push, (TONE, &[0.05, 5.0])], &[push, (TONE, &[0.05, 5.0])]),
