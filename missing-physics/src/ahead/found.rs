@@ -19,8 +19,8 @@ use crate::task::Thresholds;
 pub const IN_FULL: usize = 8;
 /// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
 const MOST: f64 = 0.5;
-/// Share of what the base model errs beyond the sensors, squared, that an incomplete model leaves at most: what leaves
-/// more is not what is missing.
+/// Share of what the base model errs beyond the sensors, squared, that a model leaves at most: what leaves more is not what is
+/// missing.
 const LEFT: f64 = 0.9;
 
 /// What a search found.
@@ -38,8 +38,9 @@ pub struct Found {
     pub costs: Vec<Difference>,
     /// Sets of added terms by their number, and how far each lies behind the best of it, nats.
     pub sets: Vec<Vec<(Vec<usize>, f64)>>,
-    /// The most that anything gains beside what is named, but has no name itself, nats.
-    pub unnamed: f64,
+    /// Sets that differ by less than this are alike, nats: what an effect must gain, or the most that anything gains
+    /// beside what is named without being named, where that is more. What is wrong with one model may gain that, too.
+    pub alike: f64,
     /// Candidates beside the best set of each size.
     pub ranking: Vec<Ranked>,
     /// Chance of a gain as large as what the last model would lose without it, for each effect.
@@ -75,7 +76,7 @@ impl Found {
             gains: Vec::new(),
             costs: Vec::new(),
             sets: Vec::new(),
-            unnamed: 0.0,
+            alike: 0.0,
             ranking: Vec::new(),
             p_values: Vec::new(),
             chance: Chance::default(),
@@ -168,7 +169,7 @@ impl Found {
             }
             let Some((idle, refusal)) = goes else { break };
             let term = self.added.remove(idle);
-            self.unnamed = self.unnamed.max(self.costs.get(idle).map_or(0.0, |cost| cost.nats));
+            self.alike = self.alike.max(self.costs.get(idle).map_or(0.0, |cost| cost.nats));
             let effect = family.terms()[term].name.clone();
             self.remarks.push(match refusal {
                 Some(refusal) => Remark::NotNamed { effects: vec![effect], refusal },
@@ -292,18 +293,12 @@ impl Found {
         self.p_values.clear();
     }
 
-    /// Sets of added terms that cannot be told from the one that was found: they predict as well to what an effect must
-    /// gain, or to what gains as much without being an effect. What is wrong with one model may gain that, too.
-    pub fn as_good<F: ModelFamily + ?Sized>(
-        &self,
-        family: &F,
-        thresholds: &Thresholds,
-    ) -> Vec<&[usize]> {
+    /// Sets of added terms that cannot be told from the one that was found.
+    pub fn as_good<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<&[usize]> {
         let sets = self.sets.get(self.added.len()).map_or(&[][..], Vec::as_slice);
         let is_it = |set: &[usize]| self.added.iter().all(|t| Self::is_in(set, *t, family));
         let Some((_, found)) = sets.iter().find(|(set, _)| is_it(set)) else { return Vec::new() };
-        let near = thresholds.better.max(self.unnamed);
-        let others = sets.iter().filter(|(set, lag)| !is_it(set) && lag - found < near);
+        let others = sets.iter().filter(|(set, lag)| !is_it(set) && lag - found < self.alike);
         others.map(|(set, _)| set.as_slice()).collect()
     }
 
@@ -593,13 +588,12 @@ mod tests {
     #[test]
     fn sets_are_told_apart_by_more_than_what_gains_as_much_without_a_name() {
         let (plant, found) = found(None);
-        let thresholds = Thresholds { better: 20.0, ..Thresholds::default() };
         let sets = vec![Vec::new(), vec![(vec![TWIN], 0.0), (vec![WAVE], 5.0), (vec![BEAT], 45.0)]];
-        let as_good = |unnamed: f64| {
-            let found = Found { sets: sets.clone(), unnamed, ..found.clone() };
-            found.as_good(&plant, &thresholds).concat()
+        let as_good = |alike: f64| {
+            let found = Found { sets: sets.clone(), alike, ..found.clone() };
+            found.as_good(&plant).concat()
         };
-        assert_eq!(as_good(0.0), [TWIN]);
+        assert_eq!(as_good(20.0), [TWIN]);
         assert_eq!(as_good(39.0), [TWIN]);
         assert_eq!(as_good(41.0), [TWIN, BEAT]);
     }

@@ -163,7 +163,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     fn ambiguous(&self) -> Vec<Ambiguity> {
         let added: Vec<usize> = self.found.added.clone();
         let mut sets: Vec<Ambiguity> = Vec::new();
-        let as_good = self.found.as_good(self.family, &self.settings.thresholds);
+        let as_good = self.found.as_good(self.family);
         // Rivals of one and the same effect stand together.
         for term in &added {
             let rivals = as_good.iter().filter_map(|set| {

@@ -139,7 +139,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             gains.push(self.comparison.compare(before, rung));
         }
         let sets = self.behind(&climb, last);
-        let unnamed = self.in_full(self.unnamed(&climb, last));
+        let alike = self.in_full(self.thresholds.better.max(self.unnamed(&climb, last)));
         let stopped = (self.stop)();
         for promise in &mut beside.promises {
             promise.leverage = promise.leverage.map(|leverage| self.in_full(leverage));
@@ -159,7 +159,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             gains,
             costs: costs.into_iter().map(|(_, cost, _)| cost).collect(),
             sets,
-            unnamed,
+            alike,
             ranking: climb.ranking,
             p_values,
             chance: beside.chance,

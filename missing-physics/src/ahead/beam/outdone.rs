@@ -21,15 +21,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if self.explains(base, last) {
             return None;
         }
+        let has_more = |refused: &Node| Self::added(base, refused).len() > added.len();
         let is_rival = |refused: &Node| {
             if added.is_empty() {
                 return !leaves_most(base, refused, self.ahead.budget());
             }
-            let fewer = Self::added(base, refused).len() <= added.len();
-            if fewer {
-                !self.stands_for(refused, last)
-            } else {
+            if has_more(refused) {
                 self.is_lesser_part(base, last, refused)
+            } else {
+                !self.stands_for(refused, last)
             }
         };
         let (refused, refusal, by) = climb
@@ -39,7 +39,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .map(|(node, refusal)| (node, refusal, self.comparison.compare(last, node)))
             .max_by(|a, b| a.2.nats.total_cmp(&b.2.nats))?;
         let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
-        let more = Self::added(base, refused).len() > added.len();
+        let more = has_more(refused);
         let outcome = if by.nats > clear { Outcome::Rival } else { Outcome::Worse };
         let because = Some(Reason::Refused { refusal: refusal.clone() });
         self.note(added.len(), refused, last, by, outcome, because);

@@ -128,3 +128,19 @@ fn what_every_plant_has_is_told_after_what_is_needed_as_much() {
     assert_eq!(told(&order[..1], 0.0), order, "one is needed more");
     assert_eq!(told(&order[..1], 1.0), [order[1], order[0]]);
 }
+
+#[test]
+fn sets_are_alike_by_what_this_search_asks_of_an_effect_or_what_gains_more_without_a_name() {
+    let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
+    let plant = Plant::new(3, &hidden);
+    let alike = |refused: Vec<Node>| {
+        let mut search = search(&plant, narrow());
+        let mut climb = climb(&plant, Vec::new());
+        let refusal = Refusal::AtLimit { parameter: "beat.size".into() };
+        climb.refused = refused.into_iter().map(|node| (node, refusal.clone())).collect();
+        let (last, costs) = search.prune(&climb, node(&plant, &hidden[..1]));
+        search.conclude(climb, &last, (costs, 0.0), Screened::default(), None).alike
+    };
+    assert_eq!(alike(Vec::new()), narrow().better);
+    assert!(alike(vec![node(&plant, &hidden)]) > 2.0 * narrow().better);
+}
