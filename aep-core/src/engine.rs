@@ -245,10 +245,9 @@ impl<T: Scalar, M: Mutation<T>, S: Selection<T, M::Individual>> Algorithm<T> for
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), CheckpointError> {
         let state: State<T, M::Individual> = crate::checkpoint::decode(bytes)?;
-        let shape = |p: &Population<T, M::Individual>| {
-            (p.len(), p.individuals.len(), p.positions.len(), p.positions.dimension())
-        };
-        if shape(&state.parents) != shape(&self.state.parents) {
+        if !state.parents.is_like(&self.state.parents)
+            || state.best.dimension() != self.domain.dimension()
+        {
             return Err(CheckpointError::Mismatch { what: "population size or dimension" });
         }
         self.state = state;

@@ -178,7 +178,11 @@ impl<T: Scalar> Method<T> for MetaEp {
 #[serde(bound = "")]
 pub struct StepSizes<T: Scalar>(pub Vec<T>);
 
-impl<T: Scalar> Individual<T> for StepSizes<T> {}
+impl<T: Scalar> Individual<T> for StepSizes<T> {
+    fn fits(&self, dimension: usize) -> bool {
+        self.0.len() == dimension
+    }
+}
 
 /// The mutation of [`MetaEp`].
 #[derive(Clone, Debug)]

@@ -12,6 +12,11 @@ pub trait Individual<T: Scalar>: Clone + Send + Sync + Serialize + DeserializeOw
 
     /// This parent survived its child.
     fn survived(&mut self) {}
+
+    /// Whether it belongs to positions of so many components; a damaged checkpoint may hold one that does not.
+    fn fits(&self, _dimension: usize) -> bool {
+        true
+    }
 }
 
 impl<T: Scalar> Individual<T> for () {}
@@ -57,6 +62,18 @@ impl<T: Scalar, I> Population<T, I> {
             self.costs[a].partial_cmp(&self.costs[b]).unwrap_or(std::cmp::Ordering::Equal)
         });
         order
+    }
+
+    /// Whether it can take the place of another one.
+    pub(crate) fn is_like(&self, other: &Self) -> bool
+    where
+        I: Individual<T>,
+    {
+        let dimension = other.positions.dimension();
+        let numbers = |p: &Self| p.positions.batch().as_slice().len();
+        let shape = |p: &Self| (p.len(), p.individuals.len(), p.positions.dimension(), numbers(p));
+        shape(self) == shape(other)
+            && self.individuals.iter().all(|carried| carried.fits(dimension))
     }
 
     /// Replaces slot `i` by slot `k` of `other`, which then holds an old individual.

@@ -218,14 +218,11 @@ impl<T: Scalar, M: Mutation<T>> SteadyState<T> for OneByOne<T, M> {
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), CheckpointError> {
         let state: State<T, M::Individual> = crate::checkpoint::decode(bytes)?;
-        let shape = |s: &State<T, M::Individual>| {
-            let p = &s.parents;
-            (p.len(), p.individuals.len(), p.positions.len(), p.positions.dimension(), s.told.len())
-        };
         let mut slots: Vec<usize> = state.waiting.iter().copied().collect();
         slots.sort_unstable();
         let whole = slots.into_iter().eq(0..self.away.len());
-        if shape(&state) != shape(&self.state)
+        if !state.parents.is_like(&self.state.parents)
+            || state.told.len() != self.state.told.len()
             || state.best.dimension() != self.domain.dimension()
             || !whole
         {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use parquet::file::metadata::ColumnChunkMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
@@ -23,6 +24,15 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>) -> Result<MemoryTable<'static>, 
         |what: String| DataError::new(path, Problem::Damaged { format: "Parquet file", what });
     let reader =
         SerializedFileReader::new(bytes::Bytes::from(bytes)).map_err(|e| damaged(e.to_string()))?;
+    let columns = reader.metadata().row_groups().iter().flat_map(|group| group.columns());
+    let starts =
+        |c: &ColumnChunkMetaData| c.dictionary_page_offset().unwrap_or(c.data_page_offset());
+    // The reader takes that for granted.
+    if columns.into_iter().any(|column| starts(column) < 0 || column.compressed_size() < 0) {
+        return Err(damaged(
+            "a column that begins before the file, or is less than nothing".into(),
+        ));
+    }
     let rows = reader.get_row_iter(None).map_err(|e| damaged(e.to_string()))?;
     let mut names: Vec<String> = Vec::new();
     let mut columns: BTreeMap<String, Vec<f64>> = BTreeMap::new();

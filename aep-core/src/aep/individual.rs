@@ -54,4 +54,8 @@ impl<T: Scalar> Individual<T> for AepIndividual {
     fn survived(&mut self) {
         self.age = self.age.saturating_add(1);
     }
+
+    fn fits(&self, dimension: usize) -> bool {
+        self.directions.len() == dimension && self.directions.iter().all(|d| matches!(d, -1 | 1))
+    }
 }

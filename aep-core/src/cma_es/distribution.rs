@@ -63,6 +63,15 @@ impl Constants {
 }
 
 impl Distribution {
+    /// Whether it is one of so many components and candidates.
+    pub(super) fn fits(&self, n: usize, lambda: usize) -> bool {
+        let vectors = [&self.mean, &self.lengths, &self.path, &self.step_path];
+        let matrices = [&self.covariance, &self.axes];
+        self.lambda == lambda
+            && vectors.iter().all(|vector| vector.len() == n)
+            && matrices.iter().all(|matrix| matrix.shape() == (n, n))
+    }
+
     pub(super) fn new(mean: Vec<f64>, sigma: f64, lambda: usize) -> Self {
         let n = mean.len();
         Self {

@@ -280,7 +280,9 @@ impl<T: Scalar> Algorithm<T> for Run<T> {
 
     fn restore(&mut self, bytes: &[u8]) -> Result<(), CheckpointError> {
         let state: State<T> = checkpoint::decode(bytes)?;
-        if state.best.dimension() != self.domain.dimension() {
+        let dimension = self.domain.dimension();
+        let fits = state.distribution.as_ref().is_none_or(|d| d.fits(dimension, self.lambda));
+        if state.best.dimension() != dimension || !fits {
             return Err(CheckpointError::Mismatch { what: "dimension" });
         }
         self.state = state;

@@ -122,6 +122,11 @@ pub fn no_cause(why: &NoCause) -> String {
         NoCause::MostIsLeft { coordinate } => {
             format!("most of what depends on {coordinate} is left")
         }
+        NoCause::SeveralBelowSensors => {
+            "it takes all of them at once, where the base model errs no more than the sensors: a single cause that is not \
+             in the library is likelier"
+                .to_owned()
+        }
     }
 }
 

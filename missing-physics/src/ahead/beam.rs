@@ -7,6 +7,7 @@
 mod by_hand;
 mod conclude;
 mod grow;
+mod identified;
 mod outdone;
 mod rivals;
 mod shape;

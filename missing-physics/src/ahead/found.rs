@@ -276,13 +276,39 @@ impl Found {
         let lacking = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
         let unit = family.quantity().unit;
         let lacking = lacking.map(|((base, _), (last, _))| Lacking { base, last, unit });
+        self.taken_back(family, ahead, thresholds, (lacking, no_cause));
+    }
+
+    /// Takes all names back where the base model errs no more than the sensors and it takes several effects at once to lower
+    /// that. So little is seldom made by two that happen to be there; two that imitate together what is in no library
+    /// are many. What every system has does not count.
+    pub fn judge_several<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let effects = self.added.iter().filter(|term| !family.is_usual(**term)).count();
+        if effects > 1 && self.base.scale <= ahead.budget() {
+            let because = Some(NoCause::SeveralBelowSensors);
+            self.taken_back(family, ahead, thresholds, (None, because));
+        }
+    }
+
+    fn taken_back<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+        (lacking, because): (Option<Lacking>, Option<NoCause>),
+    ) {
         let names = self.added.iter().map(|term| family.terms()[*term].name.clone());
         self.remarks.push(Remark::NotTheCause {
             effects: names.collect(),
             base: self.base.scale / ahead.budget(),
-            last: top.scale / ahead.budget(),
+            last: self.top().0.scale / ahead.budget(),
             lacking,
-            because: no_cause,
+            because,
         });
         self.places = left_by(&self.base, family, ahead, thresholds);
         self.complete = false;
@@ -377,7 +403,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::ahead::testing::{BEAT, Plant, TONE, TWIN, WAVE};
+    use crate::ahead::testing::{BEAT, NOISE, Plant, TONE, TWIN, WAVE};
     use crate::report::Fault;
 
     /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
@@ -583,6 +609,35 @@ mod tests {
         assert_eq!(told.gains, [Difference { nats: 120.0, error: 12.0 }]);
         assert_eq!(told.costs, told.gains);
         assert_eq!(told.remarks, [Remark::Unconfirmed { share: 0.25 }]);
+    }
+
+    #[test]
+    fn several_effects_that_lower_an_error_of_the_sensors_are_not_the_cause_and_one_is() {
+        let mut plant = Plant::new(2, &[(WAVE, &[1e-4]), (BEAT, &[1e-4])]);
+        let told = |plant: &Plant, added: &[usize]| {
+            let node = |terms: &[usize]| {
+                let terms: Vec<(usize, &[f64])> = terms.iter().map(|t| (*t, &[1e-4][..])).collect();
+                fit::evaluated(plant, Plant::model(&terms), 0)
+            };
+            let rungs = (1..=added.len()).map(|k| node(&added[..k])).collect();
+            let mut found = Found { added: added.to_vec(), rungs, ..Found::of(node(&[])) };
+            found.judge_several(plant, plant, &Thresholds::default());
+            (found.added, found.remarks)
+        };
+        assert!(fit::evaluated(&plant, Plant::model(&[]), 0).scale < NOISE);
+        let (added, remarks) = told(&plant, &[WAVE, BEAT]);
+        assert!(added.is_empty());
+        let because = |remark: &Remark| {
+            matches!(
+                remark,
+                Remark::NotTheCause { because: Some(NoCause::SeveralBelowSensors), .. }
+            )
+        };
+        assert!(because(&remarks[0]), "{remarks:?}");
+        assert_eq!(told(&plant, &[WAVE]).0, [WAVE]);
+        // What every system has does not count.
+        plant.usual = vec![BEAT];
+        assert_eq!(told(&plant, &[WAVE, BEAT]).0, [WAVE, BEAT]);
     }
 
     #[test]

@@ -337,13 +337,15 @@ impl<'a> Run<'a> {
             // A start needs no more than a part.
             let near = family.in_part().unwrap_or(family);
             let everywhere = vec![1.0; near.target().len()];
-            let start = fit::identify(near, base, &everywhere, self.settings.seed);
+            let (searched, more) = search.parted(base);
+            let start = fit::identify(near, &searched, &everywhere, self.settings.seed);
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
             let start = start.fit.model.within(family);
-            let base = base_of(&search, start.clone());
-            let elsewhere = elsewhere(family, &start, &base.model);
+            let begun = base_of(&search, start.clone());
+            let elsewhere = elsewhere(family, &start, &begun.model);
             let elsewhere = elsewhere.into_iter().map(|start| search.base_holding(start));
-            (base, elsewhere.collect())
+            let elsewhere = elsewhere.map(|node| search.joined(node, &more, base)).collect();
+            (search.joined(begun, &more, base), elsewhere)
         };
         let climb = search.begin(base, elsewhere);
         Pursuit { reading, search, climb }
@@ -352,8 +354,10 @@ impl<'a> Run<'a> {
     /// What was found, as a discovery.
     fn told<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
         (self.tell)(&Event::Finishing);
-        let Sought { reading, found, on_part } = sought;
+        let Sought { reading, mut found, on_part } = sought;
         let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
+        // Only what is told: another look must not stand for want of this one.
+        found.judge_several(family, ahead, &self.thresholds);
         let report = Report { family, ahead, settings, found, brief: on_part, stop: self.stop };
         let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());

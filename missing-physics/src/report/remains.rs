@@ -132,4 +132,6 @@ pub enum NoCause {
         /// The coordinate.
         coordinate: String,
     },
+    /// The base model errs no more than the sensors, and it takes several effects at once to lower that.
+    SeveralBelowSensors,
 }

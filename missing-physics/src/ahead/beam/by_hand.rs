@@ -34,10 +34,11 @@ impl<'a, F: ModelFamily + ?Sized> ByHand<'a, F> {
     /// A model of these terms, from nothing but their usual sizes.
     pub fn identified(&self, terms: &[usize], seed: u64) -> Node {
         let everywhere = vec![1.0; self.family.target().len()];
-        let start = crate::fit::identify(self.family, terms, &everywhere, seed);
+        let search = self.search(Vec::new());
+        let (searched, more) = search.parted(terms);
+        let start = crate::fit::identify(self.family, &searched, &everywhere, seed);
         (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
-        let searched = self.search(Vec::new()).base(start.fit.model);
-        self.in_full(searched)
+        self.in_full(search.joined(search.base(start.fit.model), &more, terms))
     }
 
     /// A model near values that are known already.
