@@ -122,10 +122,8 @@ pub fn no_cause(why: &NoCause) -> String {
         NoCause::MostIsLeft { coordinate } => {
             format!("most of what depends on {coordinate} is left")
         }
-        NoCause::SeveralBelowSensors => {
-            "it takes all of them at once, where the base model errs no more than the sensors: a single cause that is not \
-             in the library is likelier"
-                .to_owned()
+        NoCause::LeavesForce { .. } => {
+            "the base model hardly errs more than the sensors: what is there would leave hardly any of that force".to_owned()
         }
     }
 }
@@ -193,6 +191,7 @@ mod tests {
         };
         let more = no_cause(&NoCause::PlainDoesMore { place: place.clone() });
         assert_eq!(more, "largest mean error +0.500 V near 20.0 mm does more");
+        assert!(no_cause(&NoCause::LeavesForce { band: 0.2 }).contains("would leave hardly any"));
         assert_eq!(
             remains(&Remains::Structure { place }),
             "What it leaves still depends on level (34 % of it; largest mean error +0.500 V near 20.0 mm)."

@@ -19,6 +19,8 @@ use crate::task::Thresholds;
 pub const IN_FULL: usize = 8;
 /// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
 const MOST: f64 = 0.5;
+/// The same where the base model hardly errs more than the sensors: there the force is all that tells.
+const MOST_WITHIN: f64 = 0.05;
 /// Share of what the base model errs beyond the sensors, squared, that a model leaves at most: what leaves more is not what is
 /// missing.
 const LEFT: f64 = 0.9;
@@ -279,19 +281,26 @@ impl Found {
         self.taken_back(family, ahead, thresholds, (lacking, no_cause));
     }
 
-    /// Takes all names back where the base model errs no more than the sensors and it takes several effects at once to lower
-    /// that. So little is seldom made by two that happen to be there; two that imitate together what is in no library
-    /// are many. What every system has does not count.
-    pub fn judge_several<F: ModelFamily + ?Sized>(
+    /// Takes all names back where the base model hardly errs more than the sensors, and some of the force that it lacks is
+    /// still lacking beyond doubt: where errors tell so little, what is there explains that force, and what only imitates it
+    /// does so in part. What every system has is asked nothing.
+    pub fn judge_force<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
-        let effects = self.added.iter().filter(|term| !family.is_usual(**term)).count();
-        if effects > 1 && self.base.scale <= ahead.budget() {
-            let because = Some(NoCause::SeveralBelowSensors);
-            self.taken_back(family, ahead, thresholds, (None, because));
+        let within = self.base.scale / ahead.budget() <= thresholds.complete;
+        if !within || self.added.iter().all(|term| family.is_usual(*term)) {
+            return;
+        }
+        let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
+        let forces = lacks(&self.base).zip(lacks(self.top().0));
+        let Some(((base, _), (last, band))) = forces else { return };
+        if last > thresholds.complete * band && last * last > MOST_WITHIN * base * base {
+            let lacking = Lacking { base, last, unit: family.quantity().unit };
+            let because = Some(NoCause::LeavesForce { band });
+            self.taken_back(family, ahead, thresholds, (Some(lacking), because));
         }
     }
 
@@ -403,7 +412,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::ahead::testing::{BEAT, NOISE, Plant, TONE, TWIN, WAVE};
+    use crate::ahead::testing::{BEAT, Plant, TONE, TWIN, WAVE};
     use crate::report::Fault;
 
     /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
@@ -612,32 +621,38 @@ mod tests {
     }
 
     #[test]
-    fn several_effects_that_lower_an_error_of_the_sensors_are_not_the_cause_and_one_is() {
-        let mut plant = Plant::new(2, &[(WAVE, &[1e-4]), (BEAT, &[1e-4])]);
-        let told = |plant: &Plant, added: &[usize]| {
-            let node = |terms: &[usize]| {
-                let terms: Vec<(usize, &[f64])> = terms.iter().map(|t| (*t, &[1e-4][..])).collect();
-                fit::evaluated(plant, Plant::model(&terms), 0)
-            };
-            let rungs = (1..=added.len()).map(|k| node(&added[..k])).collect();
-            let mut found = Found { added: added.to_vec(), rungs, ..Found::of(node(&[])) };
-            found.judge_several(plant, plant, &Thresholds::default());
+    fn names_go_where_errors_within_the_sensors_hide_a_force_that_is_still_lacking() {
+        // Every model lacks 2 V; as large as the base's errors are, the sensors' are taken to be.
+        let told = |complete: f64, band: f64, usual: Vec<usize>| {
+            let (mut plant, mut found) = found(Some(band));
+            plant.usual = usual;
+            let thresholds = Thresholds { complete, ..Thresholds::default() };
+            found.judge_force(&plant, &plant, &thresholds);
             (found.added, found.remarks)
         };
-        assert!(fit::evaluated(&plant, Plant::model(&[]), 0).scale < NOISE);
-        let (added, remarks) = told(&plant, &[WAVE, BEAT]);
+        let (added, remarks) = told(30.0, 0.06, Vec::new());
         assert!(added.is_empty());
-        let because = |remark: &Remark| {
-            matches!(
-                remark,
-                Remark::NotTheCause { because: Some(NoCause::SeveralBelowSensors), .. }
-            )
-        };
-        assert!(because(&remarks[0]), "{remarks:?}");
-        assert_eq!(told(&plant, &[WAVE]).0, [WAVE]);
-        // What every system has does not count.
-        plant.usual = vec![BEAT];
-        assert_eq!(told(&plant, &[WAVE, BEAT]).0, [WAVE, BEAT]);
+        let [Remark::NotTheCause { lacking, because, .. }] = &remarks[..] else { panic!() };
+        assert_eq!(lacking, &Some(Lacking { base: 2.0, last: 2.0, unit: "V".into() }));
+        let Some(NoCause::LeavesForce { band }) = because else { panic!("{because:?}") };
+        assert!((band - 0.06).abs() < 1e-9);
+        // Where that is in doubt, where errors tell more, of what every system has, and where little is left of it.
+        assert_eq!(told(30.0, 0.07, Vec::new()).0, [WAVE]);
+        assert_eq!(told(1.3, 0.06, Vec::new()).0, [WAVE]);
+        assert_eq!(told(30.0, 0.06, vec![WAVE]).0, [WAVE]);
+        for (left, names) in [(0.4, 1), (0.5, 0)] {
+            let (plant, mut found) = found(Some(0.01));
+            let lacks =
+                |rms: f64| Series { force: vec![rms, -rms], ..plant.lacks.clone().unwrap() };
+            found.base = found.base.lacking(lacks(2.0));
+            found.rungs[0] = found.rungs[0].clone().lacking(lacks(left));
+            found.judge_force(
+                &plant,
+                &plant,
+                &Thresholds { complete: 30.0, ..Thresholds::default() },
+            );
+            assert_eq!(found.added.len(), names, "{left}");
+        }
     }
 
     #[test]

@@ -357,7 +357,7 @@ impl<'a> Run<'a> {
         let Sought { reading, mut found, on_part } = sought;
         let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
         // Only what is told: another look must not stand for want of this one.
-        found.judge_several(family, ahead, &self.thresholds);
+        found.judge_force(family, ahead, &self.thresholds);
         let report = Report { family, ahead, settings, found, brief: on_part, stop: self.stop };
         let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());

@@ -113,6 +113,12 @@ impl Node {
         self.missing_force.get_or_init(find).as_ref()
     }
 
+    /// One that lacks this force.
+    #[cfg(test)]
+    pub fn lacking(self, force: Series) -> Self {
+        Self { missing_force: OnceLock::from(Some(force)), ..self }
+    }
+
     /// The scale at which errors are weighed: at least what is expected, and what most or all of them are.
     pub fn weighing(&self, expected: f64) -> f64 {
         expected

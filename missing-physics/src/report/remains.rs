@@ -132,6 +132,9 @@ pub enum NoCause {
         /// The coordinate.
         coordinate: String,
     },
-    /// The base model errs no more than the sensors, and it takes several effects at once to lower that.
-    SeveralBelowSensors,
+    /// The base model hardly errs more than the sensors, and some of the force that it lacks is lacking with the effects, too.
+    LeavesForce {
+        /// Root mean square of the half-widths of its 95 % bands.
+        band: f64,
+    },
 }
