@@ -254,6 +254,17 @@ fn every_setting_is_the_one_that_was_given() {
 }
 
 #[test]
+fn the_practical_settings_are_those_that_the_docs_tell() {
+    let expected = Aep::paper()
+        .with_beta(1.0, 0.5)
+        .with_spread(Spread::StandardDeviation, Division::Whole)
+        .with_steps(StepScale::Constant, StepUnit::Covariance { share: 0.75 })
+        .with_components(Components::Mixed { probability: 0.5, share: 0.2 })
+        .with_age_limit(AgeLimit::Adopt(3));
+    assert_eq!(Aep::practical(), expected);
+}
+
+#[test]
 fn a_setting_out_of_its_range_is_refused_by_name_and_one_at_its_end_is_not() {
     let domain = Domain::cube(2, -1.0, 1.0).unwrap();
     let start = Start::new(&domain, 1);

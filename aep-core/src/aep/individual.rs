@@ -59,3 +59,27 @@ impl<T: Scalar> Individual<T> for AepIndividual {
         self.directions.len() == dimension && self.directions.iter().all(|d| matches!(d, -1 | 1))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Purpose, Streams};
+
+    #[test]
+    fn half_of_the_directions_go_down_and_half_go_up() {
+        let mut rng = Streams::new(3, Purpose::Individual, 0).stream(0);
+        let random = AepIndividual::random(10_000, &mut rng);
+        let down = random.directions().iter().filter(|d| **d == -1).count();
+        assert!(random.directions().iter().all(|d| d.abs() == 1) && random.age() == 1);
+        // Four standard deviations.
+        assert!((4_800..=5_200).contains(&down), "{down}");
+    }
+
+    #[test]
+    fn what_does_not_belong_to_its_positions_does_not_fit() {
+        let carried = |directions: &[i8]| AepIndividual { directions: directions.into(), age: 1 };
+        let fits = |directions: &[i8]| Individual::<f64>::fits(&carried(directions), 2);
+        assert!(fits(&[1, -1]));
+        assert!(!fits(&[1]) && !fits(&[1, -1, 1]) && !fits(&[1, 0]));
+    }
+}
