@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use parquet::file::metadata::ColumnChunkMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, RowGroupMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
@@ -24,7 +24,7 @@ pub(crate) fn read(path: &Path, bytes: Vec<u8>) -> Result<MemoryTable<'static>, 
         |what: String| DataError::new(path, Problem::Damaged { format: "Parquet file", what });
     let reader =
         SerializedFileReader::new(bytes::Bytes::from(bytes)).map_err(|e| damaged(e.to_string()))?;
-    let columns = reader.metadata().row_groups().iter().flat_map(|group| group.columns());
+    let columns = reader.metadata().row_groups().iter().flat_map(RowGroupMetaData::columns);
     let starts =
         |c: &ColumnChunkMetaData| c.dictionary_page_offset().unwrap_or(c.data_page_offset());
     // The reader takes that for granted.

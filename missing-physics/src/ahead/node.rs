@@ -115,6 +115,7 @@ impl Node {
 
     /// One that lacks this force.
     #[cfg(test)]
+    #[must_use]
     pub fn lacking(self, force: Series) -> Self {
         Self { missing_force: OnceLock::from(Some(force)), ..self }
     }

@@ -30,7 +30,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let mut left = more.to_vec();
         let mut found = node;
         while !left.is_empty() {
-            found = self.with_one_of(found, &mut left);
+            found = self.with_one_of(&found, &mut left);
         }
         if more.is_empty() {
             return found;
@@ -42,14 +42,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// A model with the most promising of the terms that are left, which goes from them.
-    fn with_one_of(&self, found: Node, left: &mut Vec<usize>) -> Node {
+    fn with_one_of(&self, found: &Node, left: &mut Vec<usize>) -> Node {
         // A form that is not tried by itself begins from its main one.
         let tried = |term: usize| {
             let form = !self.ahead.is_candidate(term);
             self.family.form_of(term).filter(|_| form).unwrap_or(term)
         };
         let open: Vec<usize> = left.iter().map(|term| tried(*term)).collect();
-        let screened = screen(self.family, self.ahead, &found, &open, false);
+        let screened = screen(self.family, self.ahead, found, &open, false);
         let most = screened.promises.into_iter().next();
         let place = most.as_ref().and_then(|most| open.iter().position(|t| *t == most.term));
         let term = left.remove(place.unwrap_or(0));
