@@ -79,9 +79,13 @@ pub fn silence_caught_panics() {
     });
 }
 
-fn catch<R>(evaluation: impl FnOnce() -> R) -> std::thread::Result<R> {
+/// What code of others gives that may panic; its panics are those that [`silence_caught_panics`] keeps quiet.
+///
+/// # Errors
+/// The panic.
+pub fn caught<R>(code: impl FnOnce() -> R) -> std::thread::Result<R> {
     let outer = CATCHING.replace(true);
-    let result = catch_unwind(AssertUnwindSafe(evaluation));
+    let result = catch_unwind(AssertUnwindSafe(code));
     CATCHING.set(outer);
     result
 }
@@ -95,10 +99,10 @@ pub(crate) fn evaluate_caught<T: Scalar>(
 ) -> Failures {
     let mut failures = Failures::default();
     costs.fill(T::nan());
-    let whole = catch(|| problem.evaluate_batch(points, costs));
+    let whole = caught(|| problem.evaluate_batch(points, costs));
     if whole.is_err() {
         for (x, cost) in points.rows().zip(costs.iter_mut()).filter(|(_, cost)| cost.is_nan()) {
-            match catch(|| problem.evaluate(x)) {
+            match caught(|| problem.evaluate(x)) {
                 Ok(value) => *cost = value,
                 Err(panic) => {
                     failures.panics += 1;

@@ -152,7 +152,7 @@ pub use domain::{Domain, Scale};
 pub use driver::{Driver, Outcome, RunError, minimize};
 pub use engine::Engine;
 pub use error::{ConfigError, TellError};
-pub use evaluate::{Evaluator, Failures, Serial, silence_caught_panics};
+pub use evaluate::{Evaluator, Failures, Serial, caught, silence_caught_panics};
 pub use integers::{Integers, Whole};
 pub use least_squares::{
     FnResiduals, LeastSquares, LevenbergMarquardt, Refined, SumOfSquares, least_squares, polish,
