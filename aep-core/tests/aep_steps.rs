@@ -100,9 +100,9 @@ fn a_step_that_is_drawn_again_is_one_that_stays_within() {
     // From 0.8 of a domain that ends at 1, in steps of 0.5: what is left of the normal distribution between -1.8 and 0.2.
     let aep = || {
         plain()
-            .with_beta(0.5, 0.25)
+            .with_beta(0.25, 0.125)
             .with_spread(Spread::StandardDeviation, Division::Whole)
-            .with_steps(StepScale::Constant, StepUnit::Absolute)
+            .with_steps(StepScale::Constant, StepUnit::Domain)
             .with_border(Border::Resample)
     };
     let either = steps(aep(), &population(&[&[0.8]], &[1.0], 2), 1.0);
