@@ -59,7 +59,7 @@ pub fn command() -> clap::Command {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    // They are told as what went wrong.
+    // A reader or an evaluation of others that panics is told as the error that it is.
     aep_core::silence_caught_panics();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,

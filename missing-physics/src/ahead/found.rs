@@ -267,17 +267,12 @@ impl Found {
         if self.complete && falls && no_cause.is_none() {
             return;
         }
-        let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
-        let still = lacks(top).zip(lacks(&self.base)).is_some_and(|((rms, band), (before, _))| {
-            rms > thresholds.local * band && rms * rms > MOST * before * before
-        });
+        let still = self.still_lacking(family, ahead, (thresholds.local, MOST));
         let faulty = local::faults(&top.errors).is_some() || ahead.faults().is_some();
-        if falls && !still && !faulty && no_cause.is_none() {
+        if falls && still.is_none() && !faulty && no_cause.is_none() {
             return;
         }
-        let lacking = still.then(|| lacks(&self.base).zip(lacks(top))).flatten();
-        let unit = family.quantity().unit;
-        let lacking = lacking.map(|((base, _), (last, _))| Lacking { base, last, unit });
+        let lacking = still.map(|(lacking, _)| lacking);
         self.taken_back(family, ahead, thresholds, (lacking, no_cause));
     }
 
@@ -294,14 +289,25 @@ impl Found {
         if !within || self.added.iter().all(|term| family.is_usual(*term)) {
             return;
         }
-        let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
-        let forces = lacks(&self.base).zip(lacks(self.top().0));
-        let Some(((base, _), (last, band))) = forces else { return };
-        if last > thresholds.complete * band && last * last > MOST_WITHIN * base * base {
-            let lacking = Lacking { base, last, unit: family.quantity().unit };
+        let still = self.still_lacking(family, ahead, (thresholds.complete, MOST_WITHIN));
+        if let Some((lacking, band)) = still {
             let because = Some(NoCause::LeavesForce { band });
             self.taken_back(family, ahead, thresholds, (Some(lacking), because));
         }
+    }
+
+    /// The force that is lacking before and after, and its 95 % band, where the last model leaves more than so many bands and
+    /// more than a share of the square.
+    fn still_lacking<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        ahead: &dyn Ahead,
+        (bands, share): (f64, f64),
+    ) -> Option<(Lacking, f64)> {
+        let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
+        let ((last, band), (base, _)) = lacks(self.top().0).zip(lacks(&self.base))?;
+        let still = last > bands * band && last * last > share * base * base;
+        still.then(|| (Lacking { base, last, unit: family.quantity().unit }, band))
     }
 
     fn taken_back<F: ModelFamily + ?Sized>(

@@ -27,13 +27,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// A model with more terms, however little they do, in the order of `terms`. Where time is up they begin as they promise
     /// to be best and are fitted together in a few steps.
     pub fn joined(&self, node: Node, more: &[usize], terms: &[usize]) -> Node {
-        let mut left = more.to_vec();
-        let mut found = node;
+        if more.is_empty() {
+            return node;
+        }
+        let (mut found, mut left) = (node, more.to_vec());
         while !left.is_empty() {
             found = self.with_one_of(&found, &mut left);
-        }
-        if more.is_empty() {
-            return found;
         }
         // Without a base model nothing can be said, however little time there is.
         let steps = if (self.stop)() { TRIED } else { STEPS.2 };
