@@ -30,6 +30,11 @@ pub fn refusal(refusal: &Refusal) -> String {
             quantity(value.value, &value.unit),
             quantity(*limit, &value.unit)
         ),
+        Refusal::Unknown { parameter, low, high, unit } => format!(
+            "{parameter} may be anything from {} to {}",
+            quantity(*low, unit),
+            quantity(*high, unit)
+        ),
         Refusal::ShareOfGiven { effect, share, .. } => {
             format!(
                 "{effect} is {} of what the given force has: filters make as much of it",
@@ -66,6 +71,15 @@ mod tests {
             (
                 Refusal::NotThatEffect { effect: effect(), value, limit: 2e-6, meaning },
                 "e: the gap is as narrow as it may be (b 1.00 µm, limit 2.00 µm)",
+            ),
+            (
+                Refusal::Unknown {
+                    parameter: "e.b".into(),
+                    low: 1e-6,
+                    high: 1e-2,
+                    unit: "m".into(),
+                },
+                "e.b may be anything from 1.00 µm to 10.0 mm",
             ),
             (
                 Refusal::ShareOfGiven { effect: effect(), share: 0.013, least: 0.02 },

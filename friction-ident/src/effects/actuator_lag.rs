@@ -105,6 +105,10 @@ impl Effect for SecondOrder {
         &SECOND_ORDER_ABOUT
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["zeta"]
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             states: 2,

@@ -39,6 +39,10 @@ impl Effect for Drift {
         &ABOUT
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["tau"]
+    }
+
     fn is_course_of_time(&self) -> bool {
         true
     }

@@ -69,6 +69,10 @@ impl Effect for FlexibleCoupling {
         &ABOUT
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["zeta"]
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             states: 2,

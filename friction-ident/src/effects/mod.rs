@@ -141,6 +141,12 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// Shape parameters whose value the data need not tell: whatever it is, a damping that may be none, the law is that
+    /// effect.
+    fn whatever(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// How the law repeats itself along the stroke. Where an effect does not say, its law is asked: see
     /// [`search::periodic`].
     fn periodic(&self) -> Option<Periodic> {

@@ -628,6 +628,10 @@ impl ModelFamily for FrictionFamily {
         self.terms.iter().position(|main| main.name == stem)
     }
 
+    fn needs(&self, term: usize, parameter: &str) -> bool {
+        self.effect(term).is_none_or(|effect| !effect.whatever().contains(&parameter))
+    }
+
     fn is_usual(&self, term: usize) -> bool {
         self.effect(term).is_some_and(Effect::is_usual)
     }

@@ -23,7 +23,7 @@ use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::found::{Found, Ranked};
 use super::node::Node;
-use super::refused::refused;
+use super::refused::not_told;
 use super::screen::{Screened, screen};
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Outcome, Reason, Refusal, Remains, Remark};
@@ -188,8 +188,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
             }
             let last = self.plainest(needed, &costs);
-            if let Some((term, refusal)) = refused(self.family, self.ahead, &climb.base, &last) {
-                // Its last fit took it there.
+            let told = not_told(self.family, self.ahead, &climb.base, &last);
+            if let Some((term, refusal)) = told {
+                // Its last fit took it there, or the data do not tell.
                 climb.refused.push((last.clone(), refusal.clone()));
                 let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
                 if let Some((_, cost, without)) = costs.iter().find(is).or(costs.last()) {

@@ -7,7 +7,7 @@ use super::chance::Chance;
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::node::Node;
-use super::refused::refused;
+use super::refused::not_told;
 use super::screen::Promise;
 use super::{Ahead, local};
 use crate::family::Series;
@@ -148,7 +148,7 @@ impl Found {
             }
             // All of the recording may take an effect to where it is none.
             let place = |term: usize| self.added.iter().position(|t| main(*t) == main(term));
-            let refused = refused(family, ahead, &self.base, top);
+            let refused = not_told(family, ahead, &self.base, top);
             let mut goes = refused.and_then(|(term, refusal)| Some((place(term)?, Some(refusal))));
             if goes.is_none() {
                 let last = self.added.len() - 1;

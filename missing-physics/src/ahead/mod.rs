@@ -12,6 +12,7 @@ pub mod chance;
 pub mod compare;
 pub mod fit;
 mod found;
+mod intervals;
 mod law;
 mod local;
 mod looks;

@@ -1,8 +1,10 @@
-//! Whether a fitted effect is that effect.
+//! Whether a fitted effect is that effect, and whether the data tell so.
+
+use aep_core::Scale;
 
 use super::node::Node;
-use super::{Ahead, scales};
-use crate::family::{ModelFamily, Role};
+use super::{Ahead, intervals, scales};
+use crate::family::{ModelFamily, Role, TermParameter};
 use crate::report::Refusal;
 
 /// Share of an amplitude of every model below which nothing of it is left.
@@ -38,4 +40,45 @@ pub fn refused<F: ModelFamily + ?Sized>(
         }
     }
     ahead.vanishes(&node.model)
+}
+
+/// The effect of a model that is not told, and why, if any: it is none as it was fitted, or the data do not tell what makes
+/// it one. A length, a speed or a time that may be anything, or lie beyond where it was looked for, is a limit of its law, which then is another one.
+pub fn not_told<F: ModelFamily + ?Sized>(
+    family: &F,
+    ahead: &dyn Ahead,
+    base: &Node,
+    node: &Node,
+) -> Option<(usize, Refusal)> {
+    refused(family, ahead, base, node).or_else(|| unknown(family, ahead, base, node))
+}
+
+fn unknown<F: ModelFamily + ?Sized>(
+    family: &F,
+    ahead: &dyn Ahead,
+    base: &Node,
+    node: &Node,
+) -> Option<(usize, Refusal)> {
+    let shapes = node.model.terms.iter().filter(|term| !base.model.terms.contains(term));
+    let shapes = shapes.flat_map(|&index| {
+        let term = &family.terms()[index];
+        let needed = term.parameters.iter().filter(move |parameter| {
+            let shape = parameter.role == Role::Shape && parameter.scale == Scale::Log;
+            shape && family.needs(index, &parameter.name)
+        });
+        needed.map(move |parameter| (index, parameter, term.key(parameter)))
+    });
+    let shapes: Vec<(usize, &TermParameter, String)> = shapes.collect();
+    if shapes.is_empty() {
+        return None;
+    }
+    let mut intervals = intervals::of((family, ahead), node);
+    shapes.into_iter().find_map(|(index, searched, parameter)| {
+        let is = intervals.remove(&parameter)?;
+        let beyond = is.low <= searched.lower || is.high >= searched.upper;
+        (beyond || !is.identifiable).then_some((
+            index,
+            Refusal::Unknown { parameter, low: is.low, high: is.high, unit: is.unit },
+        ))
+    })
 }

@@ -2,16 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use aep_core::Scale;
-
 use super::compare::Difference;
 use super::found::{Found, Ranked};
 use super::node::Node;
-use super::{Ahead, scales};
+use super::{Ahead, intervals};
 use crate::diagnosis::where_it_fails::{self, Look};
 use crate::diagnosis::{self, generic, noise};
 use crate::family::{Fitted, ModelFamily, detection_limit, sizes};
-use crate::fit::{self, Fit, uncertainty};
+use crate::fit::{self, Fit};
 use crate::report::{
     Ambiguity, Budget, Candidate, Decision, DetectionLimit, Discovery, MissingForce, NamedValue,
     Reason, RegimeShare, Remark, Rung, SplitMetrics, Verdict, floor_key,
@@ -265,38 +263,15 @@ pub fn rung<F: ModelFamily + ?Sized>(
 ) -> Rung {
     let terms = family.terms();
     let effects = fit.model.terms.iter().filter(|&&t| !terms[t].always);
-    let everywhere = vec![1.0; node.errors.len()];
     Rung {
         added: Vec::new(),
         effects: effects.map(|&t| terms[t].name.clone()).collect(),
-        parameters: uncertainty::estimates(
-            family,
-            &as_prediction((family, ahead), node),
-            &everywhere,
-        ),
+        parameters: intervals::of((family, ahead), node),
         error: diagnosis::errors(family, fit, split),
         p_value: None,
         metrics: Some(SplitMetrics::of(&fit.residual, family.target(), split)),
         likelihood_gain: None,
         budget: Some(node.scale / ahead.budget()).filter(|times| times.is_finite()),
-    }
-}
-
-/// The node as the estimator of intervals wants it.
-fn as_prediction<F: ModelFamily + ?Sized>((family, ahead): (&F, &dyn Ahead), node: &Node) -> Fit {
-    let moved = scales::of(family, &node.model);
-    let jacobian = node.jacobian(family, ahead).iter().zip(&moved);
-    let parameters = node.model.parameters(family);
-    let columns = jacobian.zip(parameters).map(|((column, moved), (_, parameter))| {
-        let per = if parameter.scale == Scale::Log { 1.0 } else { moved.scale() };
-        column.iter().map(|value| -value / per).collect()
-    });
-    Fit {
-        model: node.model.clone(),
-        prediction: Vec::new(),
-        residual: node.errors.clone(),
-        jacobian: columns.collect(),
-        cost: 0.0,
     }
 }
 

@@ -148,6 +148,12 @@ pub trait ModelFamily: Sync {
         false
     }
 
+    /// Whether a parameter of a term makes it what it is, so that the data must tell its value where the term is named; a
+    /// damping that may as well be none does not.
+    fn needs(&self, _term: usize, _parameter: &str) -> bool {
+        true
+    }
+
     /// The term that this one is another form of, if any. A form stands for its effect only where it is
     /// clearly better than the main one.
     fn form_of(&self, _term: usize) -> Option<usize> {

@@ -29,6 +29,17 @@ pub enum Refusal {
         /// What that means, as the effect says it.
         meaning: String,
     },
+    /// The data do not tell a value that makes it that effect.
+    Unknown {
+        /// `effect.parameter`.
+        parameter: String,
+        /// Lower end of its 95 % interval.
+        low: f64,
+        /// Upper end of its 95 % interval.
+        high: f64,
+        /// Unit of both.
+        unit: String,
+    },
     /// It is so small a share of what a given input has of it that filters make as much.
     ShareOfGiven {
         /// Name of the effect.

@@ -57,6 +57,10 @@ impl Effect for TwoMass {
         &ABOUT
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["k", "zeta"]
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             states: 2,
@@ -92,8 +96,9 @@ impl Effect for TwoMass {
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         let (load, gap, stiffness) = (found.values[0], found.values[3], found.values[4]);
         closed(found, 3).or_else(|| {
-            // Either side of the middle has half of the gap.
-            let gives = found.force * load / (load + found.mass) / stiffness;
+            // Either side of the middle has half of the gap. What presses the contact moves the load against its friction.
+            let moves = (found.force * load / (load + found.mass)).max(found.values[1]);
+            let gives = moves / stiffness;
             (gives > 0.5 * gap).then_some(Refused {
                 name: "give of the contact",
                 value: gives,

@@ -115,6 +115,10 @@ impl Effect for WithFriction {
         }
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["zeta"]
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(match self.encoder {
             Encoder::Mass => coupled!(""),

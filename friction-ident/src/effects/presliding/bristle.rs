@@ -85,6 +85,10 @@ impl Effect for Bristle {
         Some(if self.damped { bristle!("{sigma_1}") } else { bristle!("0.0") })
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["sigma_1"]
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("presliding:free")
     }

@@ -55,6 +55,10 @@ impl Effect for Free {
     }
 
     /// Alone it would fit anything a little.
+    fn whatever(&self) -> &'static [&'static str] {
+        &["sigma_1"]
+    }
+
     fn is_only_flexible(&self) -> bool {
         true
     }

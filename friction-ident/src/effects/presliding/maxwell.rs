@@ -43,6 +43,10 @@ impl Effect for MaxwellSlip {
         &ABOUT
     }
 
+    fn whatever(&self) -> &'static [&'static str] {
+        &["spread"]
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             states: 4,

@@ -68,21 +68,21 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             return None;
         }
         let free = self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2));
-        // Of more effects, and beside some that leave something, some may be needed beside it.
-        let all = added.is_empty() || (added.len() <= 2 && self.is_complete(last));
-        if all && !self.does_as_much(base, last, &free, added.len(), rival) {
+        let alone = self.does_as_much(base, last, &free, added.len(), rival);
+        // Of several effects, and beside one that leaves something, some may be needed beside it.
+        if !alone && (added.is_empty() || (added.len() == 1 && self.is_complete(last))) {
             return None;
         }
-        // Beside what leaves nothing nothing is needed.
-        let (mut kept, beside) = if self.is_complete(&free) {
+        // Beside what does as much and leaves nothing nothing is needed.
+        let (mut kept, beside) = if added.is_empty() || (alone && self.is_complete(&free)) {
             (Vec::new(), free)
         } else {
-            self.needed_beside(base, last, &free, rival)
+            let (kept, beside) = self.needed_beside(base, last, &free, rival);
+            if !self.does_as_much(base, last, &beside, added.len() - kept.len(), rival) {
+                return None;
+            }
+            (kept, beside)
         };
-        let gone = added.len() - kept.len();
-        if !added.is_empty() && !self.does_as_much(base, last, &beside, gone, rival) {
-            return None;
-        }
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
         if !kin.is_empty() {
             let shapes = [kept.as_slice(), &kin].concat();

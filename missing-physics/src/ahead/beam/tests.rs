@@ -9,7 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::*;
 use crate::ahead::fit;
-use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, RIVAL, TONE, TWIN, WAVE};
+use crate::ahead::refused::refused;
+use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, RIVAL, TONE, TONES, TWIN, WAVE};
 use crate::report::{Course, Verdict};
 use crate::{Observer, Settings, discover};
 
@@ -251,6 +252,31 @@ fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
         let parameter = "drive.size".to_owned();
         assert_eq!(why, known.then_some(Refusal::NothingLeft { parameter }));
     }
+}
+
+#[test]
+fn an_effect_is_not_told_whose_shape_the_data_do_not_tell() {
+    let plant = Plant::new(6, &[(TONE, &[0.05, 5.0])]);
+    let base = node(&plant, &[]);
+    let told = |size: f64, omega: f64| {
+        let node = node(&plant, &[(TONE, &[size, omega])]);
+        not_told(&plant, &plant, &base, &node).map(|(term, why)| {
+            assert_eq!(term, TONE);
+            why
+        })
+    };
+    assert_eq!(told(0.05, 5.0), None);
+    // So small a tone may have any frequency, and one at the end of its search another one.
+    for (size, omega) in [(1e-5, 5.0), (0.05, TONES.1)] {
+        let Some(Refusal::Unknown { parameter, low, high, .. }) = told(size, omega) else {
+            panic!("{size} {omega}")
+        };
+        assert_eq!(parameter, "tone.omega");
+        assert!(low < omega && high == TONES.1, "{low} {high}");
+    }
+    // What the base has is not asked.
+    let small = node(&plant, &[(TONE, &[1e-5, 5.0])]);
+    assert_eq!(not_told(&plant, &plant, &small, &small), None);
 }
 
 /// Asks to stop when the candidates of a rung have been looked at.

@@ -42,6 +42,22 @@ fn a_rival_must_predict_better_than_one_effect_and_as_well_as_several() {
     assert!(search.does_as_much(&base, &last, &with, 2, &rival));
 }
 
+#[test]
+fn a_rival_takes_the_place_of_one_of_two_effects_that_leave_no_more_than_the_sensors_make() {
+    let push: (usize, &[f64]) = (PUSH, &[0.3]);
+    let hidden = [push, (WAVE, &[0.006][..]), (BEAT, &[-0.0024])];
+    let mut plant = Plant::new(17, &hidden);
+    plant.kin = vec![WAVE];
+    let last = node(&plant, &hidden[..2]);
+    let thresholds = Thresholds { share: 0.0, ..narrow() };
+    let mut search = search(&plant, thresholds);
+    assert!(search.is_complete(&last));
+    let (without, remains) = search.instead(&climb(&plant, Vec::new()), &last).unwrap();
+    assert_eq!(without.effects(&plant), [PUSH]);
+    let Remains::Rival { instead_of, .. } = remains else { panic!("{remains:?}") };
+    assert_eq!(instead_of, ["wave"]);
+}
+
 /// What a refused set does to the last model.
 fn outdone(
     plant: &Plant,
