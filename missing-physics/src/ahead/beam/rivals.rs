@@ -68,9 +68,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             return None;
         }
         let free = self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2));
+        let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
         let alone = self.does_as_much(base, last, &free, added.len(), rival);
-        // Of several effects, and beside one that leaves something, some may be needed beside it.
-        if !alone && (added.is_empty() || (added.len() == 1 && self.is_complete(last))) {
+        // Of more effects, and beside some that leave something, some may be needed beside it; beside what leaves nothing
+        // no other than shapes of it are asked to give way.
+        let few = added.len() <= 2 && self.is_complete(last);
+        let in_part =
+            added.len() > kin.len() && (!kin.is_empty() || !few && !self.is_complete(&free));
+        if !alone && !in_part {
             return None;
         }
         // Beside what does as much and leaves nothing nothing is needed.
@@ -83,7 +88,6 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
             (kept, beside)
         };
-        let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
         if !kin.is_empty() {
             let shapes = [kept.as_slice(), &kin].concat();
             let alone = self.only(base, last, &shapes);
