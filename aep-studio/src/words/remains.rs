@@ -1,7 +1,7 @@
 //! What keeps a model incomplete, in sentences.
 
 use missing_physics::measurement::quantity::quantity;
-use missing_physics::report::{Astray, Course, Fault, NoCause, Remains};
+use missing_physics::report::{Astray, Course, Fault, NoCause, Refusal, Remains};
 
 use super::places::pattern;
 
@@ -17,19 +17,22 @@ pub fn remains(what: &Remains) -> String {
             let course = self::course(course);
             format!("{} {does}: {course}. Why, this recording does not show.", capital(rival))
         }
-        Remains::Outdone { by, refusal, instead_of, nats } if instead_of.is_empty() => format!(
-            "{} lowers the prediction error by {nats:.0} nats, but is not that ({}): something is missing that acts like it and \
-             is not in the library.",
-            by.join(" + "),
-            super::refusal(refusal)
-        ),
-        Remains::Outdone { by, refusal, instead_of, nats } => format!(
-            "{} predicts better than {} by {nats:.0} nats, but is not that ({}): what is missing acts like it and is not in \
-             the library.",
-            by.join(" + "),
-            instead_of.join(" + "),
-            super::refusal(refusal)
-        ),
+        Remains::Outdone { by, refusal, instead_of, nats } => {
+            let does = if instead_of.is_empty() {
+                format!("lowers the prediction error by {nats:.0} nats")
+            } else {
+                format!("predicts better than {} by {nats:.0} nats", instead_of.join(" + "))
+            };
+            let (by, refused) = (by.join(" + "), super::refusal(refusal));
+            match refusal {
+                Refusal::Unknown { .. } => format!(
+                    "{by} {does}, but {refused}: something is missing that acts like it, and this recording does not tell what."
+                ),
+                _ => format!(
+                    "{by} {does}, but is not that ({refused}): something is missing that acts like it and is not in the library."
+                ),
+            }
+        }
         Remains::RivalsUnasked => {
             "Whether something that varies freely with time does as much was not asked any more."
                 .to_owned()
@@ -137,6 +140,31 @@ fn capital(words: &str) -> String {
 mod tests {
     use super::*;
     use missing_physics::report::{Pattern, Where};
+
+    #[test]
+    fn what_was_refused_says_why_it_is_not_told() {
+        let told = |instead_of: &[&str], refusal| {
+            remains(&Remains::Outdone {
+                by: vec!["backlash".into()],
+                refusal,
+                instead_of: instead_of.iter().map(|name| (*name).to_owned()).collect(),
+                nats: 300.2,
+            })
+        };
+        let parameter = || "backlash.b".to_owned();
+        let unknown =
+            Refusal::Unknown { parameter: parameter(), low: 1e-6, high: 1e-2, unit: "m".into() };
+        assert_eq!(
+            told(&[], unknown),
+            "backlash lowers the prediction error by 300 nats, but backlash.b may be anything from 1.00 µm to 10.0 mm: \
+             something is missing that acts like it, and this recording does not tell what."
+        );
+        assert_eq!(
+            told(&["drift"], Refusal::AtLimit { parameter: parameter() }),
+            "backlash predicts better than drift by 300 nats, but is not that (backlash.b ended at the limit of its search): \
+             something is missing that acts like it and is not in the library."
+        );
+    }
 
     #[test]
     fn a_rival_says_instead_of_what_it_stands_and_how_it_runs() {

@@ -177,7 +177,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             best = self.beside_usual(&mut climb, best);
         }
         let mut best = self.usual_instead(&climb, best);
-        let (mut simplest, mut rival) = (false, None);
+        let (mut simplest, mut rival, mut unknown) = (false, None, None);
         loop {
             let (needed, costs) = self.prune(&climb, best);
             if !simplest {
@@ -194,6 +194,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 climb.refused.push((last.clone(), refusal.clone()));
                 let is = |cost: &&(usize, Difference, Node)| self.main(cost.0) == self.main(term);
                 if let Some((_, cost, without)) = costs.iter().find(is).or(costs.last()) {
+                    let found = || Some((self.unknown(&climb, &last, &refusal, *cost)?, *cost));
+                    unknown = unknown.or_else(found);
                     let (size, cost) = (costs.len() - 1, negative(*cost));
                     let because = Some(Reason::Refused { refusal });
                     self.note(size, without, &last, cost, Outcome::NotIdentifiable, because);
@@ -218,6 +220,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
             let (p_value, by_chance) = self.chance_of(&climb, &costs, &beside);
             let Some((_, cost, without)) = costs.last().filter(|_| by_chance) else {
+                // Where nothing is named something is missing all the same.
+                let enough = |(_, gain): &(Remains, Difference)| {
+                    costs.is_empty()
+                        && gain.nats > self.thresholds.better / self.ahead.asked()
+                        && self.p_value(&beside, *gain) <= self.thresholds.chance
+                };
+                rival = rival.or(unknown.filter(enough).map(|(remains, _)| remains));
                 return self.conclude(climb, &last, (costs, p_value), beside, rival);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));

@@ -7,12 +7,12 @@ use super::chance::Chance;
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::node::Node;
-use super::refused::not_told;
+use super::refused::{refused, unknown};
 use super::screen::Promise;
 use super::{Ahead, local};
 use crate::family::Series;
 use crate::family::{Fitted, ModelFamily};
-use crate::report::{Decision, Lacking, NoCause, Remains, Remark};
+use crate::report::{Decision, Lacking, NoCause, Refusal, Remains, Remark};
 use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
@@ -148,7 +148,7 @@ impl Found {
             }
             // All of the recording may take an effect to where it is none.
             let place = |term: usize| self.added.iter().position(|t| main(*t) == main(term));
-            let refused = not_told(family, ahead, &self.base, top);
+            let refused = refused(family, ahead, &self.base, top);
             let mut goes = refused.and_then(|(term, refusal)| Some((place(term)?, Some(refusal))));
             if goes.is_none() {
                 let last = self.added.len() - 1;
@@ -168,11 +168,25 @@ impl Found {
                 });
                 let least = idle.min_by(|a, b| a.1.0.nats.total_cmp(&b.1.0.nats));
                 goes = least.map(|(place, _)| (place, None));
+                goes = goes.or_else(|| {
+                    let (term, refusal) = unknown(family, ahead, &self.base, top)?;
+                    Some((place(term)?, Some(refusal)))
+                });
             }
             let Some((idle, refusal)) = goes else { break };
             let term = self.added.remove(idle);
             self.alike = self.alike.max(self.costs.get(idle).map_or(0.0, |cost| cost.nats));
             let effect = family.terms()[term].name.clone();
+            if self.added.is_empty()
+                && let Some(refusal @ Refusal::Unknown { .. }) = &refusal
+            {
+                // Something is missing all the same.
+                let nats = comparison.compare(&self.base, top).nats;
+                let by = vec![effect.clone()];
+                let refusal = refusal.clone();
+                let outdone = Remains::Outdone { by, refusal, instead_of: Vec::new(), nats };
+                self.rival.get_or_insert(outdone);
+            }
             self.remarks.push(match refusal {
                 Some(refusal) => Remark::NotNamed { effects: vec![effect], refusal },
                 None => Remark::FoundInPartOnly { effect },

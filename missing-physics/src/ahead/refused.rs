@@ -4,7 +4,7 @@ use aep_core::Scale;
 
 use super::node::Node;
 use super::{Ahead, intervals, scales};
-use crate::family::{ModelFamily, Role, TermParameter};
+use crate::family::{ModelFamily, Role};
 use crate::report::Refusal;
 
 /// Share of an amplitude of every model below which nothing of it is left.
@@ -43,7 +43,7 @@ pub fn refused<F: ModelFamily + ?Sized>(
 }
 
 /// The effect of a model that is not told, and why, if any: it is none as it was fitted, or the data do not tell what makes
-/// it one. A length, a speed or a time that may be anything, or lie beyond where it was looked for, is a limit of its law, which then is another one.
+/// it one.
 pub fn not_told<F: ModelFamily + ?Sized>(
     family: &F,
     ahead: &dyn Ahead,
@@ -53,32 +53,38 @@ pub fn not_told<F: ModelFamily + ?Sized>(
     refused(family, ahead, base, node).or_else(|| unknown(family, ahead, base, node))
 }
 
-fn unknown<F: ModelFamily + ?Sized>(
+/// The effect of a model of which the data do not tell what makes it that effect, if any: a length, a speed or a time that
+/// may be anything, or lie beyond where it was looked for, is a limit of its law, which then is another one; and what may be
+/// 0 in all of its amplitudes may not be there.
+pub fn unknown<F: ModelFamily + ?Sized>(
     family: &F,
     ahead: &dyn Ahead,
     base: &Node,
     node: &Node,
 ) -> Option<(usize, Refusal)> {
-    let shapes = node.model.terms.iter().filter(|term| !base.model.terms.contains(term));
-    let shapes = shapes.flat_map(|&index| {
-        let term = &family.terms()[index];
-        let needed = term.parameters.iter().filter(move |parameter| {
-            let shape = parameter.role == Role::Shape && parameter.scale == Scale::Log;
-            shape && family.needs(index, &parameter.name)
-        });
-        needed.map(move |parameter| (index, parameter, term.key(parameter)))
-    });
-    let shapes: Vec<(usize, &TermParameter, String)> = shapes.collect();
-    if shapes.is_empty() {
+    let added = node.model.terms.iter().filter(|term| !base.model.terms.contains(term));
+    let added: Vec<usize> = added.copied().collect();
+    if added.is_empty() {
         return None;
     }
-    let mut intervals = intervals::of((family, ahead), node);
-    shapes.into_iter().find_map(|(index, searched, parameter)| {
-        let is = intervals.remove(&parameter)?;
-        let beyond = is.low <= searched.lower || is.high >= searched.upper;
-        (beyond || !is.identifiable).then_some((
-            index,
-            Refusal::Unknown { parameter, low: is.low, high: is.high, unit: is.unit },
-        ))
+    let intervals = intervals::of((family, ahead), node);
+    added.into_iter().find_map(|index| {
+        let term = &family.terms()[index];
+        let each = term.parameters.iter().filter_map(|parameter| {
+            let key = term.key(parameter);
+            intervals.get(&key).map(|is| (parameter, key, is))
+        });
+        let (amplitudes, shapes): (Vec<_>, Vec<_>) =
+            each.partition(|(parameter, ..)| parameter.role == Role::Amplitude);
+        let lost = shapes.into_iter().find(|(parameter, _, is)| {
+            let needed = parameter.scale == Scale::Log && family.needs(index, &parameter.name);
+            let beyond = is.low <= parameter.lower || is.high >= parameter.upper;
+            needed && (beyond || !is.identifiable)
+        });
+        let may_be_none = amplitudes.iter().all(|(.., is)| is.low <= 0.0 && is.high >= 0.0);
+        let (_, parameter, is) =
+            lost.or_else(|| amplitudes.into_iter().next().filter(|_| may_be_none))?;
+        let (low, high, unit) = (is.low, is.high, is.unit.clone());
+        Some((index, Refusal::Unknown { parameter, low, high, unit }))
     })
 }

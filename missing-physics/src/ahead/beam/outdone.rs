@@ -8,10 +8,11 @@
 //! found, but a refused model foretells what the base errs beyond the sensors, something is missing.
 
 use super::{Climb, Search};
+use crate::ahead::compare::Difference;
 use crate::ahead::found::leaves_most;
 use crate::ahead::node::Node;
 use crate::family::ModelFamily;
-use crate::report::{Outcome, Reason, Remains};
+use crate::report::{Outcome, Reason, Refusal, Remains};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The model without the effects that a refused one of no more effects outdoes, and what is to be said of it.
@@ -57,6 +58,23 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             nats: self.in_full(by.nats),
         };
         Some((result, found))
+    }
+
+    /// What is to be said where the data do not tell what makes an effect that effect, though they foretell more with it.
+    pub(super) fn unknown(
+        &self,
+        climb: &Climb,
+        node: &Node,
+        refusal: &Refusal,
+        gain: Difference,
+    ) -> Option<Remains> {
+        let is = matches!(refusal, Refusal::Unknown { .. });
+        is.then(|| Remains::Outdone {
+            by: self.named(&Self::added(&climb.base, node)),
+            refusal: refusal.clone(),
+            instead_of: Vec::new(),
+            nats: self.in_full(gain.nats),
+        })
     }
 
     /// Whether a refused model goes on from all effects of one that leaves something, and does the greater part of what

@@ -274,9 +274,32 @@ fn an_effect_is_not_told_whose_shape_the_data_do_not_tell() {
         assert_eq!(parameter, "tone.omega");
         assert!(low < omega && high == TONES.1, "{low} {high}");
     }
+    // What may be 0 may not be there.
+    let wave = |size: f64| {
+        let node = node(&plant, &[(WAVE, &[size])]);
+        not_told(&plant, &plant, &base, &node).map(|(_, why)| why)
+    };
+    assert_eq!(wave(0.05), None);
+    assert!(matches!(wave(1e-5), Some(Refusal::Unknown { parameter, low, high, .. })
+        if parameter == "wave.size" && low < 0.0 && high > 0.0));
     // What the base has is not asked.
     let small = node(&plant, &[(TONE, &[1e-5, 5.0])]);
     assert_eq!(not_told(&plant, &plant, &small, &small), None);
+}
+
+#[test]
+fn what_the_data_do_not_tell_apart_from_another_law_is_missing_all_the_same() {
+    // Beyond the search of its frequency: the tone ends at its limit and predicts better all the same.
+    let plant = Plant::new(6, &[(TONE, &[0.3, TONES.1 + 0.05])]);
+    let found = among(&[TONE], &plant, narrow(), 4);
+    assert!(found.added.is_empty() && !found.complete);
+    let Some(Remains::Outdone { by, refusal: Refusal::Unknown { .. }, instead_of, nats }) =
+        found.rival
+    else {
+        panic!("{:?}", found.rival)
+    };
+    assert_eq!((by, instead_of), (vec!["tone".to_owned()], Vec::new()));
+    assert!(nats > 100.0, "{nats}");
 }
 
 /// Asks to stop when the candidates of a rung have been looked at.
