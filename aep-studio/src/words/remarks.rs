@@ -23,6 +23,11 @@ pub fn remark(remark: &Remark) -> String {
             lacking.as_ref().map_or_else(String::new, force),
             because.as_ref().map_or_else(String::new, |why| format!(" ({})", no_cause(why))),
         ),
+        Remark::OtherLaw { of, law, base, with } => format!(
+            "{of} follows another law here, {law}, beside which nothing of it is left. That law is taken as part of your base \
+             model and as no effect that is missing; the prediction error is {base:.2} times what the sensors make without \
+             it, {with:.2} with it."
+        ),
         Remark::Unconfirmed { share } => format!(
             "Time ran out: what is said was found on parts that are {} of what was looked at, and was not asked of all of it.",
             percent(*share)

@@ -147,6 +147,11 @@ pub trait Effect: Sync + Send {
         &[]
     }
 
+    /// The usual effect that this one is another law of, if any.
+    fn law_of(&self) -> Option<&'static str> {
+        None
+    }
+
     /// How the law repeats itself along the stroke. Where an effect does not say, its law is asked: see
     /// [`search::periodic`].
     fn periodic(&self) -> Option<Periodic> {

@@ -37,6 +37,11 @@ impl Effect for ShearThinning {
         &ABOUT
     }
 
+    /// Of a friction level that sets in with the speed instead of at rest.
+    fn law_of(&self) -> Option<&'static str> {
+        Some("coulomb")
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw {
             smooth: "force += {dF} * tanh(v / {v_n});",

@@ -632,6 +632,11 @@ impl ModelFamily for FrictionFamily {
         self.effect(term).is_none_or(|effect| !effect.whatever().contains(&parameter))
     }
 
+    fn law_of(&self, term: usize) -> Option<usize> {
+        let of = self.effect(term)?.law_of()?;
+        self.terms.iter().position(|term| term.name == of)
+    }
+
     fn is_usual(&self, term: usize) -> bool {
         self.effect(term).is_some_and(Effect::is_usual)
     }

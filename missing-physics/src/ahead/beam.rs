@@ -8,6 +8,7 @@ mod by_hand;
 mod conclude;
 mod grow;
 mod identified;
+mod other_law;
 mod outdone;
 mod rivals;
 mod shape;
@@ -188,6 +189,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
             }
             let last = self.plainest(needed, &costs);
+            if let Some(base) = self.with_other_law(&climb, &last, &costs) {
+                let climb = self.begin(base, Vec::new());
+                return self.finish(climb);
+            }
             let told = not_told(self.family, self.ahead, &climb.base, &last);
             if let Some((term, refusal)) = told {
                 // Its last fit took it there, or the data do not tell.
@@ -226,7 +231,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                         && gain.nats > self.thresholds.better / self.ahead.asked()
                         && self.p_value(&beside, *gain) <= self.thresholds.chance
                 };
-                rival = rival.or(unknown.filter(enough).map(|(remains, _)| remains));
+                let unknown = unknown.filter(enough).map(|(remains, _)| remains);
+                // What foretells most is told.
+                rival = rival.into_iter().chain(unknown).max_by(|a, b| gain(a).total_cmp(&gain(b)));
                 return self.conclude(climb, &last, (costs, p_value), beside, rival);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));
@@ -388,6 +395,14 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             outcome,
             because,
         });
+    }
+}
+
+/// What something that is no effect, or was refused, foretells beyond a model, nats.
+fn gain(remains: &Remains) -> f64 {
+    match remains {
+        Remains::Rival { nats, .. } | Remains::Outdone { nats, .. } => *nats,
+        _ => 0.0,
     }
 }
 

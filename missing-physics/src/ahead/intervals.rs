@@ -15,8 +15,23 @@ pub fn of<F: ModelFamily + ?Sized>(
     (family, ahead): (&F, &dyn Ahead),
     node: &Node,
 ) -> BTreeMap<String, Estimate> {
-    let everywhere = vec![1.0; node.errors.len()];
-    uncertainty::estimates(family, &as_prediction((family, ahead), node), &everywhere)
+    of_fit(family, &as_prediction((family, ahead), node))
+}
+
+/// The same where these parameters, by their places, are known.
+pub fn where_known<F: ModelFamily + ?Sized>(
+    (family, ahead): (&F, &dyn Ahead),
+    node: &Node,
+    known: impl IntoIterator<Item = usize>,
+) -> BTreeMap<String, Estimate> {
+    let mut fit = as_prediction((family, ahead), node);
+    // What changes nothing is not moved.
+    known.into_iter().for_each(|k| fit.jacobian[k].fill(0.0));
+    of_fit(family, &fit)
+}
+
+fn of_fit<F: ModelFamily + ?Sized>(family: &F, fit: &Fit) -> BTreeMap<String, Estimate> {
+    uncertainty::estimates(family, fit, &vec![1.0; fit.residual.len()])
 }
 
 /// The node as the estimator of intervals wants it.

@@ -4,8 +4,8 @@ use aep_core::Scale;
 
 use super::node::Node;
 use super::{Ahead, intervals, scales};
-use crate::family::{ModelFamily, Role};
-use crate::report::Refusal;
+use crate::family::{ModelFamily, Role, TermParameter};
+use crate::report::{Estimate, Refusal};
 
 /// Share of an amplitude of every model below which nothing of it is left.
 const GONE: f64 = 0.001;
@@ -70,21 +70,29 @@ pub fn unknown<F: ModelFamily + ?Sized>(
     let intervals = intervals::of((family, ahead), node);
     added.into_iter().find_map(|index| {
         let term = &family.terms()[index];
-        let each = term.parameters.iter().filter_map(|parameter| {
-            let key = term.key(parameter);
-            intervals.get(&key).map(|is| (parameter, key, is))
-        });
-        let (amplitudes, shapes): (Vec<_>, Vec<_>) =
-            each.partition(|(parameter, ..)| parameter.role == Role::Amplitude);
-        let lost = shapes.into_iter().find(|(parameter, _, is)| {
+        let lost = term.parameters.iter().find(|parameter| {
+            let is = &intervals[&term.key(parameter)];
             let needed = parameter.scale == Scale::Log && family.needs(index, &parameter.name);
             let beyond = is.low <= parameter.lower || is.high >= parameter.upper;
-            needed && (beyond || !is.identifiable)
+            parameter.role != Role::Amplitude && needed && (beyond || !is.identifiable)
         });
-        let may_be_none = amplitudes.iter().all(|(.., is)| is.low <= 0.0 && is.high >= 0.0);
-        let (_, parameter, is) =
-            lost.or_else(|| amplitudes.into_iter().next().filter(|_| may_be_none))?;
-        let (low, high, unit) = (is.low, is.high, is.unit.clone());
-        Some((index, Refusal::Unknown { parameter, low, high, unit }))
+        let unknown = |parameter: &TermParameter, is: &Estimate| {
+            let (low, high, unit) = (is.low, is.high, is.unit.clone());
+            (index, Refusal::Unknown { parameter: term.key(parameter), low, high, unit })
+        };
+        if let Some(parameter) = lost {
+            return Some(unknown(parameter, &intervals[&term.key(parameter)]));
+        }
+        // A shape that hardly matters lets an amplitude be anything: whether there is any is asked at these shapes.
+        let place = node.model.terms.iter().position(|term| *term == index)?;
+        let range = node.model.range(family, place);
+        let role = |k: &usize| term.parameters[k - range.start].role;
+        let shapes = range.clone().filter(|k| role(k) != Role::Amplitude);
+        let intervals = intervals::where_known((family, ahead), node, shapes);
+        let amplitudes = term.parameters.iter().filter(|p| p.role == Role::Amplitude);
+        let mut each = amplitudes.map(|p| (p, &intervals[&term.key(p)]));
+        let (first, is) = each.next()?;
+        let none = |is: &Estimate| is.low <= 0.0 && is.high >= 0.0;
+        (none(is) && each.all(|(_, is)| none(is))).then(|| unknown(first, is))
     })
 }

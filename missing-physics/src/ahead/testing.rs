@@ -93,6 +93,8 @@ pub struct Plant {
     pub forms: Vec<(usize, usize)>,
     /// Effects that every plant has.
     pub usual: Vec<usize>,
+    /// Terms with the usual ones that they are other laws of.
+    pub laws: Vec<(usize, usize)>,
     /// A term that may be another one as well.
     pub related: Option<(usize, usize)>,
     /// Frequencies beside that of a tone, rad/s.
@@ -183,6 +185,7 @@ impl Plant {
             kin: vec![PUSH],
             forms: vec![(BENT, WAVE)],
             usual: Vec::new(),
+            laws: Vec::new(),
             related: None,
             leaps: Vec::new(),
             part: None,
@@ -322,6 +325,12 @@ impl ModelFamily for Plant {
     }
     fn is_usual(&self, term: usize) -> bool {
         self.usual.contains(&term)
+    }
+    fn needs(&self, _term: usize, _parameter: &str) -> bool {
+        true
+    }
+    fn law_of(&self, term: usize) -> Option<usize> {
+        self.laws.iter().find(|(law, _)| *law == term).map(|(_, of)| *of)
     }
     fn form_of(&self, term: usize) -> Option<usize> {
         self.forms.iter().find(|(form, _)| *form == term).map(|(_, main)| *main)

@@ -148,10 +148,17 @@ pub trait ModelFamily: Sync {
         false
     }
 
-    /// Whether a parameter of a term makes it what it is, so that the data must tell its value where the term is named; a
-    /// damping that may as well be none does not.
+    /// Whether a parameter of a term makes it what it is, so that the data must tell its value where the term is named: a
+    /// length whose limit is another law. A damping that may as well be none does not, and of what a family does not speak
+    /// of nobody knows.
     fn needs(&self, _term: usize, _parameter: &str) -> bool {
-        true
+        false
+    }
+
+    /// The usual term that this one is another law of, if any: where it leaves nothing of that one it is no effect that is
+    /// missing, but how that one is in this system.
+    fn law_of(&self, _term: usize) -> Option<usize> {
+        None
     }
 
     /// The term that this one is another form of, if any. A form stands for its effect only where it is

@@ -44,6 +44,8 @@ pub enum Reason {
     Usual,
     /// The candidate has a simpler effect in the place of one.
     Simpler,
+    /// The candidate is without a usual effect of the base, of which one of its effects is another law.
+    OtherLaw,
     /// Something that stands for no effect was asked.
     Rival {
         /// What it is.

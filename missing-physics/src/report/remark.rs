@@ -50,6 +50,18 @@ pub enum Remark {
         /// Number of the pieces.
         pieces: usize,
     },
+    /// A usual effect of the base model follows another law here, which leaves nothing of it: that stands in the base
+    /// model and counts as no effect that is missing.
+    OtherLaw {
+        /// The effect of the base model.
+        of: String,
+        /// The effect that is its law here.
+        law: String,
+        /// Prediction error of the base model without it in multiples of what the sensors make.
+        base: f64,
+        /// With it.
+        with: f64,
+    },
     /// Effects come nearest and are not the cause.
     NotTheCause {
         /// The effects.

@@ -1,5 +1,6 @@
 mod conclude;
 mod grow;
+mod other_law;
 mod rivals;
 mod shape;
 mod simpler;
@@ -10,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::*;
 use crate::ahead::fit;
 use crate::ahead::refused::refused;
-use crate::ahead::testing::{BEAT, BENT, BOTH, PUSH, Plant, RIVAL, TONE, TONES, TWIN, WAVE};
+use crate::ahead::testing::{BEAT, BENT, BOTH, DRIVE, PUSH, Plant, RIVAL, TONE, TONES, TWIN, WAVE};
 use crate::report::{Course, Verdict};
 use crate::{Observer, Settings, discover};
 

@@ -1,0 +1,50 @@
+//! What is another law of a usual effect of the base model.
+
+use super::*;
+
+/// What is found beside a base model with a wave, of which what is nearly a wave and a beat is another law.
+fn beside_wave(hidden: &[(usize, &[f64])], law: bool) -> Found {
+    let mut plant = Plant::new(21, hidden);
+    if law {
+        plant.laws = vec![(BOTH, WAVE)];
+    }
+    let thresholds = Thresholds { most: 2, ..narrow() };
+    let search = |candidates| Search::new(&plant, &plant, thresholds, candidates, &never, &|_| ());
+    let mut search = search(vec![BOTH, TONE]);
+    let base = search.base(Plant::model(&[(WAVE, &[0.05])]));
+    let climb = search.begin(base, Vec::new());
+    search.finish(climb)
+}
+
+const LAW: (usize, &[f64]) = (BOTH, &[0.05]);
+
+#[test]
+fn a_law_that_leaves_nothing_of_a_usual_effect_stands_in_the_base() {
+    let found = beside_wave(&[LAW], true);
+    assert!(found.added.is_empty(), "{:?}", found.added);
+    assert!(found.complete && found.rival.is_none());
+    assert_eq!(found.base.model.terms, [DRIVE, WAVE, BOTH]);
+    let [Remark::OtherLaw { of, law, base, with }] = &found.remarks[..] else {
+        panic!("{:?}", found.remarks)
+    };
+    assert_eq!((of.as_str(), law.as_str()), ("wave", "both"));
+    assert!(*base > 1.3 && *with < 1.1, "{base} {with}");
+    let asked = found.decisions.iter().find(|d| d.because == Some(Reason::OtherLaw)).unwrap();
+    assert_eq!((asked.outcome, &asked.candidate[..]), (Outcome::Added, &["both".to_owned()][..]));
+    // Of what is no law of another it is a name.
+    assert_eq!(beside_wave(&[LAW], false).added, [BOTH]);
+}
+
+#[test]
+fn beside_a_law_that_stands_in_the_base_another_effect_is_found() {
+    let found = beside_wave(&[LAW, (TONE, &[0.03, 5.0])], true);
+    assert_eq!(found.added, [TONE]);
+    assert!(found.base.model.terms.contains(&BOTH));
+}
+
+#[test]
+fn a_law_beside_what_it_is_a_law_of_is_an_effect() {
+    let found = beside_wave(&[LAW, (WAVE, &[0.1])], true);
+    assert_eq!(found.added, [BOTH]);
+    assert!(found.remarks.is_empty(), "{:?}", found.remarks);
+}
