@@ -12,7 +12,7 @@ pub fn reason(decision: &Decision) -> Option<String> {
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),
         Reason::OtherLaw => "without what one of its effects is another law of".to_owned(),
-        Reason::Simpler => "a simpler effect in the place of one".to_owned(),
+        Reason::Simpler => "simpler effects in the place of one".to_owned(),
         Reason::Usual => "the usual effects in its place".to_owned(),
         Reason::Rival { rival } => rival.clone(),
         Reason::Refused { refusal } => self::refusal(refusal),

@@ -42,7 +42,7 @@ pub enum Reason {
     PlainForm,
     /// The candidate has what every system of its kind has in the place of an effect.
     Usual,
-    /// The candidate has a simpler effect in the place of one.
+    /// The candidate has simpler effects in the place of one.
     Simpler,
     /// The candidate is without a usual effect of the base, of which one of its effects is another law.
     OtherLaw,

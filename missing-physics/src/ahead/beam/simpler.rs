@@ -1,8 +1,9 @@
-//! Whether a simpler effect does what one of several does, beside the others.
+//! Whether simpler effects do what one does, beside the others.
 //!
 //! Of sets that are as good the one with the fewest parameters is told, but the search only keeps the best few of each size.
 //! An effect that shows only beside another one stays behind the one that imitates both: a spring that is at rest elsewhere
-//! than at zero behind the bend of a pendulum. So the simpler ones are asked in the place of each effect of the last set.
+//! than at zero behind the bend of a pendulum. So the simpler ones are asked in the place of each effect of the last set, and
+//! where none does, one beside what every system has: with no more parameters in all, where they predict better.
 
 use super::grow::CATCHES_UP;
 use super::{Climb, Costs, STEPS, Search};
@@ -17,7 +18,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// models without each.
     pub(super) fn simplified(&mut self, climb: &Climb, set: &Node, costs: &Costs) -> Option<Node> {
         let mut best = None;
-        for (term, cost, without) in costs.iter().filter(|_| costs.len() > 1) {
+        for (term, cost, without) in costs {
             // Beside what took the place of another one the model without it is another.
             let again = best.as_ref().map(|best: &Node| {
                 let form = best.model.terms.iter().find(|t| self.main(**t) == self.main(*term));
@@ -26,26 +27,38 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             });
             let without = again.as_ref().unwrap_or(without);
             let from = best.as_ref().unwrap_or(set);
-            if let Some(simpler) = self.in_the_place_of(climb, from, (*term, cost.nats), without) {
-                best = Some(simpler);
-            }
+            let cost = cost.nats;
+            // Of single effects the search has asked all.
+            let few = self.family.terms()[*term].parameters.len() - 1;
+            let one = (costs.len() > 1)
+                .then(|| self.in_the_place_of(climb, from, cost, without, few))
+                .flatten();
+            let simpler = one.or_else(|| {
+                let usual = self.with_usual(without.model.clone(), without.setting)?;
+                let taken = self.parameters(&usual) - self.parameters(without);
+                let few = (few + 1).checked_sub(taken)?;
+                self.in_the_place_of(climb, from, cost, &usual, few)
+            });
+            best = simpler.or(best);
         }
         best
     }
 
+    /// The set `best` with an effect of at most so many parameters beside a model without one of its effects, which it loses
+    /// `cost` nats without.
     fn in_the_place_of(
         &mut self,
         climb: &Climb,
         best: &Node,
-        (term, cost): (usize, f64),
+        cost: f64,
         without: &Node,
+        parameters: usize,
     ) -> Option<Node> {
         if (self.stop)() {
             return None;
         }
-        let parameters = |t: usize| self.family.terms()[t].parameters.len();
-        let simpler = |t: &usize| parameters(*t) < parameters(term);
-        let open = self.candidates.iter().copied().filter(simpler);
+        let simple = |t: &usize| self.family.terms()[*t].parameters.len() <= parameters;
+        let open = self.candidates.iter().copied().filter(simple);
         let open: Vec<usize> = open.filter(|t| self.family.joins(&without.model, *t)).collect();
         if open.is_empty() {
             return None;
@@ -53,15 +66,17 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let screened = screen(self.family, self.ahead, without, &open, false);
         let clear = self.thresholds.clear(self.comparison.compare(&climb.base, best).nats);
         let least = self.promising().max(CATCHES_UP * (cost - clear));
-        let size = Self::added(&climb.base, best).len();
         for start in self.chosen(&screened.promises, least, self.thresholds.beam) {
             let other = self.begun(start, without.setting)?;
             let other = self.fitter().settled(other, STEPS.1);
             let by = self.comparison.compare(best, &other);
             let is_one = refused(self.family, self.ahead, &climb.base, &other).is_none();
             let leaves_more = self.is_complete(best) && !self.is_complete(&other);
-            let as_good = is_one && !leaves_more && by.nats > -clear;
+            let fewer = self.parameters(&other) < self.parameters(best);
+            let needed = if fewer { -clear } else { 0.0 };
+            let as_good = is_one && !leaves_more && by.nats > needed;
             let outcome = if as_good { Outcome::Added } else { Outcome::Worse };
+            let size = Self::added(&climb.base, &other).len();
             self.note(size, &other, best, by, outcome, Some(Reason::Simpler));
             if as_good {
                 return Some(other);

@@ -70,7 +70,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// A model with every usual effect that it lacks; nothing where it lacks none.
-    fn with_usual(&self, model: Fitted, setting: usize) -> Option<Node> {
+    pub(super) fn with_usual(&self, model: Fitted, setting: usize) -> Option<Node> {
         let mut found = fit::evaluated(self.ahead, model, setting);
         let mut any = false;
         loop {

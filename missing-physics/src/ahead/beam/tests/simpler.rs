@@ -4,7 +4,16 @@ use super::*;
 
 /// The effects of a set after simpler ones were asked in the place of each.
 fn simplified(hidden: &[(usize, &[f64])], found: &[(usize, &[f64])]) -> Vec<usize> {
-    let plant = Plant::new(6, hidden);
+    beside_usual(&[], hidden, found)
+}
+
+fn beside_usual(
+    usual: &[usize],
+    hidden: &[(usize, &[f64])],
+    found: &[(usize, &[f64])],
+) -> Vec<usize> {
+    let mut plant = Plant::new(6, hidden);
+    plant.usual = usual.to_vec();
     let mut search = search(&plant, narrow());
     let set = node(&plant, found);
     let costs = (0..found.len()).map(|k| {
@@ -34,4 +43,16 @@ fn an_effect_of_fewer_parameters_that_shows_beside_another_takes_the_place_of_wh
 #[test]
 fn a_single_effect_was_compared_with_the_others_when_it_was_found() {
     assert_eq!(simplified(&[(BEAT, &[0.05])], &[(TONE, &[0.01, 5.0])]), [TONE]);
+}
+
+#[test]
+fn what_shows_only_beside_a_usual_effect_takes_the_place_of_one_of_as_many_parameters() {
+    let push: (usize, &[f64]) = (PUSH, &[0.05]);
+    let beat: (usize, &[f64]) = (BEAT, &[0.05]);
+    let imitates: (usize, &[f64]) = (TONE, &[0.01, 5.0]);
+    assert_eq!(beside_usual(&[PUSH], &[push, beat], &[imitates]), [PUSH, BEAT]);
+    // What predicts no better does not, nor does one of more parameters.
+    let tone: (usize, &[f64]) = (TONE, &[0.05, 5.0]);
+    assert_eq!(beside_usual(&[PUSH], &[tone], &[tone]), [TONE]);
+    assert_eq!(beside_usual(&[PUSH], &[push, beat], &[(WAVE, &[0.01])]), [WAVE]);
 }
