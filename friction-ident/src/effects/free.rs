@@ -3,12 +3,14 @@
 //! A friction level or a force that may be anything at every moment or place explains nothing. Where it predicts as
 //! well as effects do that were found, the recording does not show those effects: see [`missing_physics::family::Rival`].
 
+mod gain;
 mod wave;
 
 use super::{About, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use missing_physics::report::Course;
 
+pub use gain::GainOverTime;
 pub use wave::ForceWave;
 
 /// Knots over the recording or the stroke; straight between them, 0 at the first one, so that nothing competes with
@@ -43,7 +45,7 @@ pub struct Free {
 }
 
 /// All of them, in the order in which they are asked.
-pub static RIVALS: [Free; 5] = [
+pub static RIVALS: [Free; 6] = [
     Free {
         effect: &FrictionOverTime,
         title: "a friction level that varies freely with time",
@@ -65,6 +67,11 @@ pub static RIVALS: [Free; 5] = [
         is_kin: |effect| effect.is_of_place() || is_constant(effect),
     },
     Free { effect: &ForceWave, title: "a force that repeats itself over time", is_kin: |_| false },
+    Free {
+        effect: &GainOverTime,
+        title: "a gain of the drive that changes over time",
+        is_kin: |effect| effect.is_course_of_time(),
+    },
 ];
 
 /// Whether a force is the same everywhere and always: a course without a bend.
@@ -269,17 +276,32 @@ pub fn course(
             Some(Course::Wave { amplitude: sine.hypot(*cosine), period: *period, unit, along_unit })
         }
         ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
-            let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
-            let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
-            let high = knots.iter().fold(f64::NEG_INFINITY, |high, v| high.max(*v));
-            let jump = |k: &usize| (knots[k + 1] - knots[*k]).abs();
-            let most = (0..FREE).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
-            let at = |k: usize| moment(k as f64 / FREE as f64);
-            let (from, to) = (at(most), at(most + 1));
-            Some(Course::Varies { range: high - low, from, to, unit, along_unit })
+            let knots = std::iter::once(0.0).chain(values.iter().copied()).collect();
+            Some(varies(knots, moment, unit, along_unit))
+        }
+        ("gain-over-time", [even, growing]) => {
+            let share = |k: usize| k as f64 / FREE as f64;
+            let knots = (0..KNOTS).map(|k| gain::gain([0.0, 1.0, *even, *growing], share(k)));
+            Some(varies(knots.collect(), moment, unit, along_unit))
         }
         _ => None,
     }
+}
+
+/// What takes these values at the knots.
+fn varies(
+    knots: Vec<f64>,
+    moment: impl Fn(f64) -> f64,
+    unit: String,
+    along_unit: String,
+) -> Course {
+    let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
+    let high = knots.iter().fold(f64::NEG_INFINITY, |high, v| high.max(*v));
+    let jump = |k: &usize| (knots[k + 1] - knots[*k]).abs();
+    let most = (0..FREE).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
+    let at = |k: usize| moment(k as f64 / FREE as f64);
+    let (from, to) = (at(most), at(most + 1));
+    Course::Varies { range: high - low, from, to, unit, along_unit }
 }
 
 #[cfg(test)]
@@ -341,6 +363,10 @@ mod tests {
         };
         assert_eq!((range, unit.as_str(), along_unit.as_str()), (1.7, "N", "m"));
         assert!((from - 0.1).abs() < 1e-12 && (to - 0.11).abs() < 1e-12, "{from} {to}");
+        let Some(Course::Varies { range, .. }) = told("gain-over-time", &[-0.2, 0.1]) else {
+            panic!("it varies")
+        };
+        assert!((range - 0.1).abs() < 1e-12, "{range}");
         let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
         let step = Course::Step { change: -1.7, at: 11.5, unit, along_unit };
         assert_eq!(told("friction-step", &[-1.7, 0.5]).unwrap(), step);

@@ -270,7 +270,8 @@ pub(super) fn rivals(family: &FrictionFamily) -> Vec<Rival> {
             effects.filter(|(_, effect)| (free.is_kin)(**effect)).map(|(k, _)| k + 1).collect();
         Some(Rival { term: term(free.effect.about().name)?, title: free.title, kin })
     };
-    RIVALS.iter().filter_map(rival).collect()
+    let shows = |free: &&Free| family.given.is_none() || free.effect.shows_beside_given_force();
+    RIVALS.iter().filter(shows).filter_map(rival).collect()
 }
 
 /// `count` values within the limits, evenly on the parameter's scale; one alone is where a search starts.

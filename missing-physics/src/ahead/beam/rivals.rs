@@ -92,8 +92,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let shapes = [kept.as_slice(), &kin].concat();
             let alone = self.only(base, last, &shapes);
             let clear = self.thresholds.clear(self.comparison.compare(base, &beside).nats);
-            if self.explains(base, &alone) || self.comparison.compare(&alone, &beside).nats <= clear
-            {
+            // One that is more flexible may gain by what it is free to do.
+            let freer = self.parameters(&beside) > self.parameters(&alone);
+            let as_good = self.comparison.compare(&alone, &beside).nats <= clear;
+            if as_good || freer && self.explains(base, &alone) {
                 kept = shapes;
             }
         }
