@@ -276,25 +276,21 @@ pub fn course(
             Some(Course::Wave { amplitude: sine.hypot(*cosine), period: *period, unit, along_unit })
         }
         ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
-            let knots = std::iter::once(0.0).chain(values.iter().copied()).collect();
-            Some(varies(knots, moment, unit, along_unit))
+            let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
+            Some(varies(&knots, moment, unit, along_unit))
         }
         ("gain-over-time", [even, growing]) => {
             let share = |k: usize| k as f64 / FREE as f64;
-            let knots = (0..KNOTS).map(|k| gain::gain([0.0, 1.0, *even, *growing], share(k)));
-            Some(varies(knots.collect(), moment, unit, along_unit))
+            let at = |k| gain::gain([0.0, 1.0, *even, *growing], share(k));
+            let knots: [f64; KNOTS] = std::array::from_fn(at);
+            Some(varies(&knots, moment, unit, along_unit))
         }
         _ => None,
     }
 }
 
 /// What takes these values at the knots.
-fn varies(
-    knots: Vec<f64>,
-    moment: impl Fn(f64) -> f64,
-    unit: String,
-    along_unit: String,
-) -> Course {
+fn varies(knots: &[f64], moment: impl Fn(f64) -> f64, unit: String, along_unit: String) -> Course {
     let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
     let high = knots.iter().fold(f64::NEG_INFINITY, |high, v| high.max(*v));
     let jump = |k: &usize| (knots[k + 1] - knots[*k]).abs();
