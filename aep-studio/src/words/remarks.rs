@@ -23,10 +23,9 @@ pub fn remark(remark: &Remark) -> String {
             lacking.as_ref().map_or_else(String::new, force),
             because.as_ref().map_or_else(String::new, |why| format!(" ({})", no_cause(why))),
         ),
-        Remark::OtherLaw { of, law, base, with } => format!(
-            "{of} follows another law here, {law}, beside which nothing of it is left. That law is taken as part of your base \
-             model and as no effect that is missing; the prediction error is {base:.2} times what the sensors make without \
-             it, {with:.2} with it."
+        Remark::OtherLaw { of, law, nats } => format!(
+            "{of} follows another law here, {law}, which leaves next to nothing of it: it stands in the base model, which \
+             gains {nats:.0} nats by it, and counts as no effect that is missing. Put it in the place of {of} in your model."
         ),
         Remark::Unconfirmed { share } => format!(
             "Time ran out: what is said was found on parts that are {} of what was looked at, and was not asked of all of it.",
@@ -105,6 +104,14 @@ mod tests {
             "nearest: ripple + drift would take the prediction error from 3.00 to 2.50 times what the sensors make, the \
              force that is lacking from 4.00 N to 3.50 N: that is not the cause (most of what depends on position is left)"
         );
+    }
+
+    #[test]
+    fn another_law_of_a_usual_effect_is_told_as_what_to_put_into_the_model() {
+        let (of, law) = ("coulomb".to_owned(), "shear-thinning".to_owned());
+        let told = remark(&Remark::OtherLaw { of, law, nats: 312.4 });
+        assert!(told.contains("shear-thinning") && told.contains("312 nats"), "{told}");
+        assert!(told.ends_with("Put it in the place of coulomb in your model."), "{told}");
     }
 
     #[test]

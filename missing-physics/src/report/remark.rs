@@ -57,10 +57,8 @@ pub enum Remark {
         of: String,
         /// The effect that is its law here.
         law: String,
-        /// Prediction error of the base model without it in multiples of what the sensors make.
-        base: f64,
-        /// With it.
-        with: f64,
+        /// What the base model gains by it, nats.
+        nats: f64,
     },
     /// Effects come nearest and are not the cause.
     NotTheCause {

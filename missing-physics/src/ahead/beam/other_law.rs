@@ -40,12 +40,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
             let with = self.only(base, last, &[term]);
             let name = |term: usize| self.family.terms()[term].name.clone();
-            self.remarks.push(Remark::OtherLaw {
-                of: name(of),
-                law: name(term),
-                base: self.budget(base),
-                with: self.budget(&with),
-            });
+            let nats = self.in_full(self.comparison.compare(base, &with).nats);
+            self.remarks.push(Remark::OtherLaw { of: name(of), law: name(term), nats });
             return Some(with);
         }
         None
