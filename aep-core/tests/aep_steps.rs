@@ -96,6 +96,27 @@ fn at_age_1_a_step_goes_along_the_directions_and_later_either_way() {
 }
 
 #[test]
+fn at_age_1_a_step_of_all_components_together_goes_along_the_directions_each_in_its_own_unit() {
+    // One component is a thousand times as wide as another, one is the same everywhere.
+    let positions: [&[f64]; 4] =
+        [&[0.0, 0.0, 7.0], &[1000.0, 2.0, 7.0], &[-1000.0, 1.0, 7.0], &[500.0, -3.0, 7.0]];
+    let unit = |j: usize| {
+        let mean = positions.iter().map(|x| x[j]).sum::<f64>() / 4.0;
+        (positions.iter().map(|x| (x[j] - mean).powi(2)).sum::<f64>() / 4.0).sqrt()
+    };
+    let aep = plain()
+        .with_beta(1.0, 0.5)
+        .with_spread(Spread::StandardDeviation, Division::Whole)
+        .with_steps(StepScale::Constant, StepUnit::Covariance { share: 1.0 });
+    let young = population(&positions, &[1.0, 2.0, 3.0, 4.0], 1);
+    let directions = young.individuals[0].directions().to_vec();
+    for step in steps(aep, &young, 1e9) {
+        let along: f64 = (0..2).map(|j| f64::from(directions[j]) * step[j] / unit(j)).sum();
+        assert!(along >= -1e-9 && step[2] == 0.0, "{step:?} {directions:?}");
+    }
+}
+
+#[test]
 fn a_step_that_is_drawn_again_is_one_that_stays_within() {
     // From 0.8 of a domain that ends at 1, in steps of 0.5: what is left of the normal distribution between -1.8 and 0.2.
     let aep = || {
@@ -176,6 +197,11 @@ fn costs_relative_to_the_population_have_no_unit_and_no_offset() {
         // (f - best) / (median - best) + floor
         assert_near(length(8.0), 3.0 * ((8.0 - 2.0) / (5.0 - 2.0) + 0.1));
         assert_near(length(1.0), 3.0 * 0.1);
+    }
+    // Where the better half is all alike, or the median has no cost, the floor is all there is.
+    for costs in [[4.0; 3], [4.0, f64::INFINITY, f64::INFINITY]] {
+        let drawn = steps(aep.clone(), &population(&positions, &costs, 1), 1e6);
+        assert_near(rms(&drawn, 0), 3.0 * 0.1);
     }
 }
 
