@@ -198,6 +198,10 @@ fn costs_relative_to_the_population_have_no_unit_and_no_offset() {
         assert_near(length(8.0), 3.0 * ((8.0 - 2.0) / (5.0 - 2.0) + 0.1));
         assert_near(length(1.0), 3.0 * 0.1);
     }
+    // Of five the median is the third.
+    let five: [&[f64]; 5] = [&[0.0], &[1.0], &[2.0], &[3.0], &[4.0]];
+    let drawn = steps(aep.clone(), &population(&five, &[11.0, 2.0, 5.0, 8.0, 9.0], 1), 1e6);
+    assert_near(rms(&drawn, 0), 3.0 * ((11.0 - 2.0) / (8.0 - 2.0) + 0.1));
     // Where the better half is all alike, or the median has no cost, the floor is all there is.
     for costs in [[4.0; 3], [4.0, f64::INFINITY, f64::INFINITY]] {
         let drawn = steps(aep.clone(), &population(&positions, &costs, 1), 1e6);

@@ -11,7 +11,9 @@ pub fn reason(decision: &Decision) -> Option<String> {
         Reason::ErrorNoLower => "the prediction error is no lower with it".to_owned(),
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),
-        Reason::OtherLaw => "without what one of its effects is another law of".to_owned(),
+        Reason::OtherLaw => {
+            "another law of an effect of the base, which leaves nothing of it".to_owned()
+        }
         Reason::Simpler => "simpler effects in the place of one".to_owned(),
         Reason::Usual => "the usual effects in its place".to_owned(),
         Reason::Rival { rival } => rival.clone(),

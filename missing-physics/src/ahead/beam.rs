@@ -189,7 +189,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
             }
             let last = self.plainest(needed, &costs);
-            if let Some(base) = self.with_other_law(&climb, &last, &costs) {
+            if let Some(base) = self.with_other_law(&climb, &last) {
                 let climb = self.begin(base, Vec::new());
                 return self.finish(climb);
             }

@@ -44,7 +44,7 @@ pub enum Reason {
     Usual,
     /// The candidate has simpler effects in the place of one.
     Simpler,
-    /// The candidate is without a usual effect of the base, of which one of its effects is another law.
+    /// The candidate has another law of a usual effect of the base, which leaves nothing of that one.
     OtherLaw,
     /// Something that stands for no effect was asked.
     Rival {

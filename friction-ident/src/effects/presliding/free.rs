@@ -54,11 +54,12 @@ impl Effect for Free {
         &ABOUT
     }
 
-    /// Alone it would fit anything a little.
+    /// How far it gives lies in `d` and the shares together.
     fn whatever(&self) -> &'static [&'static str] {
-        &["sigma_1"]
+        &["d", "sigma_1"]
     }
 
+    /// Alone it would fit anything a little.
     fn is_only_flexible(&self) -> bool {
         true
     }

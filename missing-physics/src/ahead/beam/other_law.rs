@@ -1,49 +1,44 @@
 //! Whether an effect is how a usual one of the base model is in this system.
 //!
 //! A friction level that sets in with the speed is a level and no lubricant that thins: simulators smooth it so, and some
-//! guides do. Where an effect is another law of a usual one, and that one does next to nothing beside it, it is no effect
-//! that is missing, and the search begins once more from the base model with that law.
+//! guides do. Where an effect is another law of a usual one, and next to nothing of that one is left beside it, it is no
+//! effect that is missing, and the search begins once more from the base model with that law.
 
-use super::{Climb, Costs, STEPS, Search};
+use super::{Climb, Search};
 use crate::ahead::node::Node;
-use crate::family::ModelFamily;
+use crate::family::{ModelFamily, Role};
 use crate::report::{Outcome, Reason, Remark};
 
-/// What a usual effect may do to the squared error beside its other law, as a share of what that one does: where both are
-/// there neither is idle.
-const IDLE: f64 = 0.1;
+/// Share of its amplitude in the base model that may be left of an effect beside another law of it.
+const LEFT: f64 = 0.1;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The base model with an effect of the last one that leaves nothing of what it is another law of, if any does;
-    /// `costs` says what each effect does.
-    pub(super) fn with_other_law(
-        &mut self,
-        climb: &Climb,
-        last: &Node,
-        costs: &Costs,
-    ) -> Option<Node> {
+    /// The base model with an effect of the last one that leaves nothing of what it is another law of, if any does.
+    pub(super) fn with_other_law(&mut self, climb: &Climb, last: &Node) -> Option<Node> {
         let base = &climb.base;
-        for (term, _, other) in costs {
-            let term = *term;
-            let of = self.family.law_of(term).filter(|of| base.model.terms.contains(of));
-            let Some(of) = of.filter(|_| !(self.stop)()) else { continue };
-            let without = last.model.without(self.family, of);
-            let without = self.refit(&without, last.setting, STEPS.1);
-            let by = self.comparison.compare(last, &without);
-            let does = |without: &Node| self.budget(without).powi(2) - self.budget(last).powi(2);
-            let idle = does(&without) < IDLE * does(other);
-            let outcome = if idle { Outcome::Added } else { Outcome::Worse };
-            let size = Self::added(base, last).len();
-            self.note(size, &without, last, by, outcome, Some(Reason::OtherLaw));
-            if !idle {
-                continue;
-            }
-            let with = self.only(base, last, &[term]);
-            let name = |term: usize| self.family.terms()[term].name.clone();
-            let nats = self.in_full(self.comparison.compare(base, &with).nats);
-            self.remarks.push(Remark::OtherLaw { of: name(of), law: name(term), nats });
-            return Some(with);
-        }
-        None
+        let other = Self::added(base, last).into_iter().find_map(|law| {
+            let of = self.family.law_of(law)?;
+            let is_gone = self.is_gone(base, last, of)?;
+            is_gone.then_some((law, of))
+        });
+        let (law, of) = other.filter(|_| !(self.stop)())?;
+        let with = self.only(base, last, &[law]);
+        let by = self.comparison.compare(base, &with);
+        self.note(1, &with, base, by, Outcome::Added, Some(Reason::OtherLaw));
+        let name = |term: usize| self.family.terms()[term].name.clone();
+        let nats = self.in_full(by.nats);
+        self.remarks.push(Remark::OtherLaw { of: name(of), law: name(law), nats });
+        Some(with)
+    }
+
+    /// Whether next to nothing is left of a term of the base model; nothing where that does not have it.
+    fn is_gone(&self, base: &Node, last: &Node, term: usize) -> Option<bool> {
+        let place = base.model.terms.iter().position(|known| *known == term)?;
+        let parameters = self.family.terms()[term].parameters.iter();
+        let mut sizes = parameters.zip(base.model.range(self.family, place));
+        Some(sizes.all(|(parameter, k)| {
+            let (before, after) = (base.model.values[k], last.model.values[k]);
+            parameter.role != Role::Amplitude || after.abs() <= LEFT * before.abs()
+        }))
     }
 }

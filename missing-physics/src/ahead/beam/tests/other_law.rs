@@ -30,7 +30,10 @@ fn a_law_that_leaves_nothing_of_a_usual_effect_stands_in_the_base() {
     assert_eq!((of.as_str(), law.as_str()), ("wave", "both"));
     assert!(*nats > 100.0, "{nats}");
     let asked = found.decisions.iter().find(|d| d.because == Some(Reason::OtherLaw)).unwrap();
-    assert_eq!((asked.outcome, &asked.candidate[..]), (Outcome::Added, &["both".to_owned()][..]));
+    assert_eq!(
+        (asked.outcome, &asked.candidate[..]),
+        (Outcome::Added, &["wave".to_owned(), "both".to_owned()][..])
+    );
     // Of what is no law of another it is a name.
     assert_eq!(beside_wave(&[LAW], false).added, [BOTH]);
 }
