@@ -6,7 +6,7 @@ use aep_core::Scale;
 
 use super::node::Node;
 use super::{Ahead, scales};
-use crate::family::ModelFamily;
+use crate::family::{ModelFamily, Role};
 use crate::fit::{Fit, uncertainty};
 use crate::report::Estimate;
 
@@ -18,16 +18,34 @@ pub fn of<F: ModelFamily + ?Sized>(
     of_fit(family, &as_prediction((family, ahead), node))
 }
 
-/// The same where these parameters, by their places, are known.
-pub fn where_known<F: ModelFamily + ?Sized>(
+/// The amplitude of an effect that is largest, by its place among all parameters, and its interval where the others
+/// of the effect keep their proportion to it and its shapes are known: of several that make up for each other none need be
+/// known for the effect to be.
+pub fn of_size<F: ModelFamily + ?Sized>(
     (family, ahead): (&F, &dyn Ahead),
     node: &Node,
-    known: impl IntoIterator<Item = usize>,
-) -> BTreeMap<String, Estimate> {
+    place: usize,
+) -> Option<(usize, Estimate)> {
+    let term = &family.terms()[*node.model.terms.get(place)?];
+    let range = node.model.range(family, place);
+    let begin = range.start;
+    let is_amplitude = |k: &usize| term.parameters[k - begin].role == Role::Amplitude;
+    let values = &node.model.values;
+    let amplitudes = range.clone().filter(is_amplitude);
+    let largest = amplitudes.max_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs()))?;
     let mut fit = as_prediction((family, ahead), node);
-    // What changes nothing is not moved.
-    known.into_iter().for_each(|k| fit.jacobian[k].fill(0.0));
-    of_fit(family, &fit)
+    for k in range.filter(|k| *k != largest) {
+        let share = values[k] / values[largest];
+        // What changes nothing is not moved.
+        let column = std::mem::take(&mut fit.jacobian[k]);
+        fit.jacobian[k] = vec![0.0; column.len()];
+        if is_amplitude(&k) && share.is_finite() {
+            let sum = fit.jacobian[largest].iter_mut().zip(&column);
+            sum.for_each(|(sum, value)| *sum += share * value);
+        }
+    }
+    let key = term.key(&term.parameters[largest - begin]);
+    Some((largest - begin, of_fit(family, &fit).remove(&key)?))
 }
 
 fn of_fit<F: ModelFamily + ?Sized>(family: &F, fit: &Fit) -> BTreeMap<String, Estimate> {

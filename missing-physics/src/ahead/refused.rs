@@ -83,16 +83,11 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         if let Some(parameter) = lost {
             return Some(unknown(parameter, &intervals[&term.key(parameter)]));
         }
-        // A shape that hardly matters lets an amplitude be anything: whether there is any is asked at these shapes.
+        // A shape that hardly matters lets an amplitude be anything, and so does another amplitude: whether there is any of
+        // it is asked at these shapes and proportions.
         let place = node.model.terms.iter().position(|term| *term == index)?;
-        let range = node.model.range(family, place);
-        let role = |k: &usize| term.parameters[k - range.start].role;
-        let shapes = range.clone().filter(|k| role(k) != Role::Amplitude);
-        let intervals = intervals::where_known((family, ahead), node, shapes);
-        let amplitudes = term.parameters.iter().filter(|p| p.role == Role::Amplitude);
-        let mut each = amplitudes.map(|p| (p, &intervals[&term.key(p)]));
-        let (first, is) = each.next()?;
-        let none = |is: &Estimate| is.low <= 0.0 && is.high >= 0.0;
-        (none(is) && each.all(|(_, is)| none(is))).then(|| unknown(first, is))
+        let (largest, is) = intervals::of_size((family, ahead), node, place)?;
+        let may_be_none = is.low <= 0.0 && is.high >= 0.0;
+        may_be_none.then(|| unknown(&term.parameters[largest], &is))
     })
 }
