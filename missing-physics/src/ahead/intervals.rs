@@ -18,8 +18,8 @@ pub fn of<F: ModelFamily + ?Sized>(
     of_fit(family, &as_prediction((family, ahead), node))
 }
 
-/// The amplitude of an effect that is largest, by its place among all parameters, and its interval where the others
-/// of the effect keep their proportion to it and its shapes are known: of several that make up for each other none need be
+/// The amplitude of an effect that is largest, by its place among the effect's parameters, and its interval where the
+/// others of the effect keep their proportion to it and its shapes are known: of several that make up for each other none need be
 /// known for the effect to be.
 pub fn of_size<F: ModelFamily + ?Sized>(
     (family, ahead): (&F, &dyn Ahead),

@@ -28,36 +28,36 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let without = again.as_ref().unwrap_or(without);
             let from = best.as_ref().unwrap_or(set);
             let cost = cost.nats;
+            let count = self.family.terms()[*term].parameters.len();
             // Of single effects the search has asked all.
-            let few = self.family.terms()[*term].parameters.len() - 1;
-            let one = (costs.len() > 1)
-                .then(|| self.in_the_place_of(climb, from, cost, without, few))
-                .flatten();
-            let simpler = one.or_else(|| {
+            let mut simpler = None;
+            if costs.len() > 1 {
+                simpler = self.in_the_place_of(climb, from, cost, without, count);
+            }
+            let simpler = simpler.or_else(|| {
                 let usual = self.with_usual(without.model.clone(), without.setting)?;
                 let taken = self.parameters(&usual) - self.parameters(without);
-                let few = (few + 1).checked_sub(taken)?;
-                self.in_the_place_of(climb, from, cost, &usual, few)
+                self.in_the_place_of(climb, from, cost, &usual, (count + 1).checked_sub(taken)?)
             });
             best = simpler.or(best);
         }
         best
     }
 
-    /// The set `best` with an effect of at most so many parameters beside a model without one of its effects, which it loses
-    /// `cost` nats without.
+    /// The set `best` with an effect of fewer than `below` parameters beside a model without one of its effects, which it
+    /// loses `cost` nats without.
     fn in_the_place_of(
         &mut self,
         climb: &Climb,
         best: &Node,
         cost: f64,
         without: &Node,
-        parameters: usize,
+        below: usize,
     ) -> Option<Node> {
         if (self.stop)() {
             return None;
         }
-        let simple = |t: &usize| self.family.terms()[*t].parameters.len() <= parameters;
+        let simple = |t: &usize| self.family.terms()[*t].parameters.len() < below;
         let open = self.candidates.iter().copied().filter(simple);
         let open: Vec<usize> = open.filter(|t| self.family.joins(&without.model, *t)).collect();
         if open.is_empty() {

@@ -7,6 +7,7 @@ fn simplified(hidden: &[(usize, &[f64])], found: &[(usize, &[f64])]) -> Vec<usiz
     beside_usual(&[], hidden, found)
 }
 
+/// The same where every plant has some.
 fn beside_usual(
     usual: &[usize],
     hidden: &[(usize, &[f64])],
