@@ -15,6 +15,8 @@ pub struct AsFound<'a> {
     pub force: f64,
     /// One count of the position, m or rad: that of the encoder, or of one whose counts are as large as the noise.
     pub count: f64,
+    /// How far the model's contact gives before it slides, m or rad; 0 without one.
+    pub give: f64,
 }
 
 impl AsFound<'_> {

@@ -25,6 +25,8 @@ const CLOSED: f64 = 1.05;
 /// Counts of the position within which nothing is known of a gap: each of the two readings between which it is crossed is
 /// half a count from where the drive is, on either side.
 const COUNTS: f64 = 2.0;
+/// A contact is turned around over twice the distance that it gives from rest.
+const REVERSAL: f64 = 2.0;
 
 static FORMS: [&dyn Effect; 1] = [&two_mass::TwoMass];
 static ABOUT: About = About {
@@ -72,12 +74,16 @@ impl Effect for Backlash {
     }
 }
 
-/// Why a gap is none that is as narrow as its search allows, a coupling then, or that no encoder sees.
+/// Why a gap is none that is as narrow as its search allows, a coupling then, that no encoder sees, or that the model's
+/// contact crosses before it slides: where friction turns over such a distance anyway, a gap is the shape of that.
 fn closed(found: &AsFound<'_>, width: usize) -> Option<Refused> {
     let width = (width, "b");
     let narrow = found.at_least(width, CLOSED, "the gap is as narrow as it may be");
     let hidden = "the gap is narrower than two counts of the position";
-    narrow.or_else(|| found.within(width, COUNTS * found.count, hidden))
+    let within = "friction turns over as long a distance without the gap";
+    narrow
+        .or_else(|| found.within(width, COUNTS * found.count, hidden))
+        .or_else(|| found.within(width, REVERSAL * found.give, within))
 }
 
 /// State: place of the drive in the gap, -1/2..1/2 of its width.

@@ -141,6 +141,12 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// How far a contact with these values gives before it slides at this friction level, the mean of its elements; nothing
+    /// where it is no contact.
+    fn gives(&self, _values: &[f64], _level: f64) -> Option<f64> {
+        None
+    }
+
     /// Shape parameters whose value the data need not tell: whatever it is, a damping that may be none, the law is that
     /// effect.
     fn whatever(&self) -> &'static [&'static str] {

@@ -214,6 +214,7 @@ impl FrictionFamily {
                     mass: self.mass_of(model),
                     force: self.force(),
                     count: self.position_deviation() * 12.0f64.sqrt(),
+                    give: self.give(model),
                 };
                 let Refused { name, value, limit, unit_of, meaning } = effect.refused(&found)?;
                 let unit = effect.about().parameter(unit_of).map_or("", |k| {
@@ -228,6 +229,17 @@ impl FrictionFamily {
                 Some((*term, refusal))
             })
         })
+    }
+
+    /// How far the contact of a model gives before it slides; 0 without one.
+    fn give(&self, model: &Fitted) -> f64 {
+        let level = self.value(model, "coulomb", "F_C").unwrap_or(0.0);
+        let gives = model.terms.iter().enumerate().find_map(|(place, term)| {
+            let effect = self.effects[term.checked_sub(1)?];
+            let full = self.in_full(effect, *term, &model.values[model.range(self, place)]);
+            effect.gives(&full.iter().map(|of| of[0]).collect::<Vec<f64>>(), level)
+        });
+        gives.unwrap_or(0.0)
     }
 
     /// Values of a term with those that are known from elsewhere, in the order of its effect's table, and the limits of
@@ -435,6 +447,37 @@ mod tests {
         let least = family.terms.iter().find(|term| term.name == "backlash:two-mass").unwrap();
         let least = least.parameters.iter().find(|p| p.name == "b").unwrap().lower;
         assert!(gap(1e9, least).unwrap().2.contains("as narrow as it may be"));
+    }
+
+    #[test]
+    fn a_gap_must_be_wider_than_friction_turns_over_anyway() {
+        let family = family();
+        let of = |name: &str| family.terms.iter().position(|term| term.name == name).unwrap();
+        let base = Fitted { terms: vec![0], values: vec![20.0] }.with(of("coulomb"), &[8.0]);
+        let refused = |contact: Option<(&str, &[f64])>, b: f64| {
+            let with = contact.map(|(name, values)| base.clone().with(of(name), values));
+            family.vanishes(&with.unwrap_or(base.clone()).with(of("backlash"), &[4.0, b]))
+        };
+        // Each gives 8e-4 m: a spring, and five elements with a fifth of the level each.
+        let free = [1.5 * 8e-4 / (0.666 * 1.5), 0.0, 0.0, 0.0, 0.0, 1e3];
+        let contacts: [(&str, &[f64]); 4] = [
+            ("presliding", &[1e4]),
+            ("presliding:dahl", &[1e4]),
+            ("presliding:maxwell-slip", &[1e4, 2.5]),
+            ("presliding:free", &free),
+        ];
+        for contact in contacts {
+            assert_eq!(refused(Some(contact), 1.65e-3), None, "{}", contact.0);
+            let Some((_, Refusal::NotThatEffect { value, limit, meaning, .. })) =
+                refused(Some(contact), 1.55e-3)
+            else {
+                panic!("{} is no contact", contact.0)
+            };
+            assert_eq!((value.name.as_str(), value.unit.as_str()), ("b", "m"));
+            assert!((limit / 1.6e-3 - 1.0).abs() < 1e-9, "{} {limit}", contact.0);
+            assert!(meaning.contains("without the gap"), "{meaning}");
+        }
+        assert_eq!(refused(None, 1.55e-3), None);
     }
 
     #[test]

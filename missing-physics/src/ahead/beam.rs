@@ -22,7 +22,7 @@ pub use by_hand::ByHand;
 use super::Ahead;
 use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
-use super::found::{Found, Ranked};
+use super::found::{Found, MOST_WITHIN, Ranked};
 use super::node::Node;
 use super::refused::not_told;
 use super::screen::{Screened, screen};
@@ -325,9 +325,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.budget(node) <= self.thresholds.complete
     }
 
-    /// Whether a model explains all that a base errs which is not complete.
+    /// Whether a model explains all that a base errs which is not complete; where that errs little, all of the force that
+    /// it lacks beyond doubt.
     fn explains(&self, base: &Node, node: &Node) -> bool {
-        !self.is_complete(base) && self.budget(node) <= 1.0
+        let all = || {
+            let lacks = |node: &Node| node.missing_force(self.ahead)?.size();
+            let (force, band) = lacks(base)?;
+            let (left, _) = lacks(node)?;
+            Some(force > self.thresholds.local * band && left * left <= MOST_WITHIN * force * force)
+        };
+        self.budget(node) <= 1.0 && (!self.is_complete(base) || all().unwrap_or(false))
     }
 
     /// Terms of a node that the base does not have, in the order of the model.

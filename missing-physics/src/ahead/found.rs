@@ -20,7 +20,7 @@ pub const IN_FULL: usize = 8;
 /// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
 const MOST: f64 = 0.5;
 /// The same where the base model hardly errs more than the sensors: there the force is all that tells.
-const MOST_WITHIN: f64 = 0.05;
+pub const MOST_WITHIN: f64 = 0.05;
 /// Share of what the base model errs beyond the sensors, squared, that a model leaves at most: what leaves more is not what is
 /// missing.
 const LEFT: f64 = 0.9;

@@ -59,6 +59,11 @@ impl Effect for Free {
         &["d", "sigma_1"]
     }
 
+    fn gives(&self, values: &[f64], _level: f64) -> Option<f64> {
+        let each = shares(values).into_iter().zip(REACH);
+        Some(values[0] * each.map(|(share, reach)| share * reach).sum::<f64>())
+    }
+
     /// Alone it would fit anything a little.
     fn is_only_flexible(&self) -> bool {
         true

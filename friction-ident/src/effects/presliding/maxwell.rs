@@ -79,6 +79,10 @@ impl Effect for MaxwellSlip {
         })
     }
 
+    fn gives(&self, values: &[f64], level: f64) -> Option<f64> {
+        Some(level / values[0])
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("presliding:free")
     }

@@ -10,19 +10,20 @@ use crate::family::{ModelFamily, Role};
 use crate::report::{Outcome, Reason, Remark};
 
 /// Share of its amplitude in the base model that may be left of an effect beside another law of it.
-const LEFT: f64 = 0.1;
+const LEFT: f64 = 0.2;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The base model with an effect of the last one that leaves nothing of what it is another law of, if any does.
+    /// The base model with an effect of the last one that leaves nothing of what it is another law of, beside the others or
+    /// alone, if any does.
     pub(super) fn with_other_law(&mut self, climb: &Climb, last: &Node) -> Option<Node> {
         let base = &climb.base;
-        let other = Self::added(base, last).into_iter().find_map(|law| {
-            let of = self.family.law_of(law)?;
-            let is_gone = self.is_gone(base, last, of)?;
-            is_gone.then_some((law, of))
-        });
-        let (law, of) = other.filter(|_| !(self.stop)())?;
-        let with = self.only(base, last, &[law]);
+        let (law, of, with) = Self::added(base, last).into_iter().find_map(|law| {
+            let of = self.family.law_of(law).filter(|_| !(self.stop)())?;
+            let with = self.only(base, last, &[law]);
+            // What is found beside it may stand on some of either.
+            let is = self.is_gone(base, last, of)? || self.is_gone(base, &with, of)?;
+            is.then_some((law, of, with))
+        })?;
         let by = self.comparison.compare(base, &with);
         self.note(1, &with, base, by, Outcome::Added, Some(Reason::OtherLaw));
         let name = |term: usize| self.family.terms()[term].name.clone();

@@ -46,6 +46,22 @@ fn beside_a_law_that_stands_in_the_base_another_effect_is_found() {
 }
 
 #[test]
+fn what_stands_on_some_of_either_does_not_hide_that_a_law_alone_leaves_nothing() {
+    let mut plant = Plant::new(21, &[LAW, (TONE, &[0.03, 5.0])]);
+    plant.laws = vec![(BOTH, WAVE)];
+    let mut search = search(&plant, narrow());
+    let mut climb = climb(&plant, Vec::new());
+    climb.base = search.base(Plant::model(&[(WAVE, &[0.05])]));
+    // As the beam may leave it: half of the wave beside half of the law.
+    let last = node(&plant, &[(WAVE, &[0.02]), (BOTH, &[0.025]), (TONE, &[0.03, 5.0])]);
+    let with = search.with_other_law(&climb, &last).unwrap();
+    assert_eq!(with.model.terms, [DRIVE, WAVE, BOTH]);
+    // Beside what is a wave for the most part it is none.
+    let last = node(&plant, &[(WAVE, &[0.02]), (TONE, &[0.03, 5.0])]);
+    assert!(search.with_other_law(&climb, &last).is_none());
+}
+
+#[test]
 fn a_law_beside_what_it_is_a_law_of_is_an_effect() {
     let found = beside_wave(&[LAW, (WAVE, &[0.1])], true);
     assert_eq!(found.added, [BOTH]);

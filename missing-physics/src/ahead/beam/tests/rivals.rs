@@ -1,7 +1,7 @@
 //! What takes names back: what stands for no effect, and what was refused.
 
 use super::*;
-use crate::family::Rival;
+use crate::family::{Rival, Series};
 
 const HIDDEN: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[-0.02])];
 
@@ -153,6 +153,23 @@ fn what_explains_all_that_the_sensors_do_not_is_not_outdone() {
     // Of a base that is complete there is nothing to explain.
     climb.base.scale = 1.2 * crate::ahead::testing::NOISE;
     assert!(search.outdone(&climb, &last).is_some());
+    // But for a force that is there beyond doubt: all of it.
+    let lacks = |node: &Node, size: f64, band: f64| {
+        node.clone().lacking(Series {
+            time: vec![0.0, 0.1],
+            force: vec![size, -size],
+            deviation: vec![band / 1.96; 2],
+            recorded: vec![9.0; 2],
+            known: vec![true; 2],
+        })
+    };
+    for (before, left, band, explained) in
+        [(2.0, 0.4, 0.5, true), (2.0, 0.5, 0.5, false), (2.0, 0.4, 1.1, false)]
+    {
+        let base = lacks(&climb.base, before, band);
+        let is = search.explains(&base, &lacks(&last, left, band));
+        assert_eq!(is, explained, "{before} {left} {band}");
+    }
 }
 
 #[test]
