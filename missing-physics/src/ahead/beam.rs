@@ -8,6 +8,7 @@ mod by_hand;
 mod conclude;
 mod grow;
 mod identified;
+mod led;
 mod other_law;
 mod outdone;
 mod rivals;
@@ -62,6 +63,8 @@ pub struct Climb {
     refused: Vec<(Node, Refusal)>,
     /// Those of the last size that are extended.
     beam: Vec<Node>,
+    /// A set that another reading led to.
+    led: Option<Node>,
     ended: bool,
 }
 
@@ -165,10 +168,16 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             refused: Vec::new(),
             beam: std::iter::once(base.clone()).chain(elsewhere).collect(),
             base,
+            led: None,
             ended: false,
         };
         self.grow(&mut climb);
         climb
+    }
+
+    /// Goes on to the best set of effects, one that another reading led to among them.
+    pub fn finish_led(self, climb: Climb, led: Node) -> Found {
+        self.finish(Climb { led: Some(led), ..climb })
     }
 
     /// Goes on to the best set of effects.
@@ -248,6 +257,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         loop {
             while !climb.ended && climb.nodes.len() <= self.thresholds.most {
                 self.grow(climb);
+            }
+            if let Some(led) = climb.led.take().filter(|_| !(self.stop)())
+                && self.follows(climb, &led)
+            {
+                continue;
             }
             let best = self.size(climb, climb.base.clone(), 0);
             let (needed, costs) = self.prune(climb, best);

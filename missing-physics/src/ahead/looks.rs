@@ -209,8 +209,8 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         }
         let other = second.reading;
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
-        if reading::needs_less(&found, other.family, &fitter, better) {
-            let less = second.search.finish(second.climb);
+        if let Some(less) = reading::with_less(&found, other.family, &fitter, better) {
+            let less = second.search.finish_led(second.climb, less);
             if reading::nats(less.top(), found.top(), better) > 0.0 {
                 return (other, less);
             }

@@ -24,22 +24,24 @@ pub fn nats(here: (&Node, usize), there: (&Node, usize), better: f64) -> f64 {
     }
 }
 
-/// Whether the other reading, whose `fitter` this is, does as well without one of the effects that were found.
-pub fn needs_less<F: ModelFamily + ?Sized>(
+/// What was found without one of its effects, where the other reading, whose `fitter` this is, does as well without.
+pub fn with_less<F: ModelFamily + ?Sized>(
     found: &Found,
     other: &F,
     fitter: &Fitter<'_, F>,
     better: f64,
-) -> bool {
+) -> Option<Node> {
     let (top, effects) = found.top();
     if effects == 0 {
-        return false;
+        return None;
     }
     let all = fitter.refit(top.model.clone(), top.setting, STEPS);
-    found.added.iter().any(|term| {
+    let without = found.added.iter().map(|term| {
         let without = fitter.refit(all.model.without(other, *term), all.setting, STEPS);
-        gain(&without, top) < better
-    })
+        (gain(&without, top), without)
+    });
+    let best = without.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.filter(|(gain, _)| *gain < better).map(|(_, without)| without)
 }
 
 /// Gain in log-likelihood from one model to another, each with errors of its own size.
@@ -82,9 +84,10 @@ mod tests {
         let found = result(&both, &[WAVE, BEAT], rungs);
         // The same noise, and no beat in it.
         let other = Plant::new(2, &[wave]);
-        assert!(needs_less(&found, &other, &Fitter::new(&other, &other), 20.0));
-        assert!(!needs_less(&found, &both, &Fitter::new(&both, &both), 20.0));
+        let less = |found, other: &Plant| with_less(found, other, &Fitter::new(other, other), 20.0);
+        assert_eq!(less(&found, &other).unwrap().effects(&other), [WAVE]);
+        assert!(less(&found, &both).is_none());
         let nothing = result(&both, &[], Vec::new());
-        assert!(!needs_less(&nothing, &other, &Fitter::new(&other, &other), 20.0));
+        assert!(less(&nothing, &other).is_none());
     }
 }

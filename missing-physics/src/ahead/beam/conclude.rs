@@ -78,7 +78,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// The model without a term, refitted.
-    fn without(&self, climb: &Climb, node: &Node, term: usize) -> Node {
+    pub(super) fn without(&self, climb: &Climb, node: &Node, term: usize) -> Node {
         // A rung below may have it in another form.
         let form = node.model.terms.iter().find(|t| self.main(**t) == self.main(term));
         let model = node.model.without(self.family, *form.unwrap_or(&term));

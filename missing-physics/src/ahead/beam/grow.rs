@@ -253,7 +253,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// Candidates of a rung with what they gain: fitted ones by comparison, the others as promised.
-    fn ranked(&self, from: &Node, children: &[Node], screened: Screened) -> Ranked {
+    pub(super) fn ranked(&self, from: &Node, children: &[Node], screened: Screened) -> Ranked {
         let mut rows: Vec<Row> = Vec::new();
         for promise in screened.promises {
             let main = self.main(promise.term);

@@ -1,5 +1,6 @@
 mod conclude;
 mod grow;
+mod led;
 mod other_law;
 mod rivals;
 mod shape;
@@ -45,6 +46,7 @@ fn climb(plant: &Plant, sizes: Vec<Vec<Node>>) -> Climb {
         refused: Vec::new(),
         beam: Vec::new(),
         base,
+        led: None,
         ended: true,
     }
 }

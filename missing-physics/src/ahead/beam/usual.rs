@@ -52,6 +52,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             screened: climb.screened.clone(),
             refused: climb.refused.clone(),
             beam: vec![usual.clone()],
+            led: None,
             ended: false,
         };
         again.nodes.resize(size, Vec::new());
