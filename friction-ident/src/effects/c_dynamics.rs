@@ -33,7 +33,7 @@ pub struct CDynamics {
     pub sliding: &'static str,
     /// Changes `position`, which is shown.
     pub shown: &'static str,
-    /// Newton iterations after a first solution for no displacement.
+    /// Newton iterations after a first solution.
     pub iterations: usize,
     /// Whether the contact holds up to the level at rest.
     pub breakaway: bool,

@@ -23,7 +23,7 @@ pub trait Element: Sync + Send {
     /// Takes the step: the state at its end.
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]);
 
-    /// Newton iterations of the implicit step after a first solution for no displacement.
+    /// Newton iterations of the implicit step after a first solution.
     fn iterations(&self) -> usize;
 
     /// For elements with the encoder on their own body: replaces positions of the mass, one per lane, by what is

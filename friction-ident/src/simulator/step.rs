@@ -90,6 +90,8 @@ impl Plants {
             &mut s.push,
         );
         if !self.solve_contact() {
+            // From no displacement what a contact gives is concave on either side: Newton comes from below.
+            self.scratch.displacement.fill(0.0);
             self.newton();
             self.scratch.taken.copy_from_slice(&self.scratch.left);
             self.commit_elements();
@@ -134,6 +136,9 @@ impl Plants {
         );
         self.balance();
         if attached {
+            // A second body is soft and stiff in turn: most likely the mass goes on as it does.
+            let s = &mut self.scratch;
+            displace(&s.left, &self.velocity, &mut s.displacement);
             self.newton();
         } else {
             let s = &mut self.scratch;
@@ -181,9 +186,8 @@ impl Plants {
         );
     }
 
-    /// Mean velocity with the elements, by Newton from no displacement.
+    /// Mean velocity with the elements, by Newton from the displacement at hand.
     fn newton(&mut self) {
-        self.scratch.displacement.fill(0.0);
         self.scratch.open.fill(1.0);
         for _ in 0..=self.iterations {
             self.respond_elements();

@@ -74,6 +74,11 @@ impl Climb {
         let size = self.nodes.len() - 1;
         (self.nodes.last().and_then(|sets| sets.first()).unwrap_or(&self.base), size)
     }
+
+    /// Terms of a model that the base does not have.
+    pub fn added(&self, node: &Node) -> Vec<usize> {
+        node.added_to(&self.base)
+    }
 }
 
 /// A running search.
@@ -182,7 +187,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// Goes on to the best set of effects.
     pub fn finish(mut self, mut climb: Climb) -> Found {
-        let mut best = self.grown(&mut climb);
+        let grown = self.grown(&mut climb);
+        self.finish_grown(climb, grown)
+    }
+
+    /// The same from the best set of those that were grown.
+    pub fn finish_grown(mut self, mut climb: Climb, mut best: Node) -> Found {
         if !self.is_complete(&best) {
             best = self.beside_usual(&mut climb, best);
         }
@@ -253,7 +263,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// The best set of effects. Where pruning comes to a smaller set that no size had, the search goes on from there
     /// (floating search: P. Pudil, J. Novovicova and J. Kittler, 1994).
-    fn grown(&mut self, climb: &mut Climb) -> Node {
+    pub fn grown(&mut self, climb: &mut Climb) -> Node {
         loop {
             while !climb.ended && climb.nodes.len() <= self.thresholds.most {
                 self.grow(climb);
@@ -353,7 +363,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// Terms of a node that the base does not have, in the order of the model.
     fn added(base: &Node, node: &Node) -> Vec<usize> {
-        node.model.terms.iter().copied().filter(|t| !base.model.terms.contains(t)).collect()
+        node.added_to(base)
     }
 
     /// The effect that a term is a form of.

@@ -44,6 +44,11 @@ impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
         Self { family, ahead, stop: &|| false, held: false }
     }
 
+    /// The family that its models are of.
+    pub fn family(&self) -> &'a F {
+        self.family
+    }
+
     /// One that goes no further once `stop` says so.
     #[must_use]
     pub fn stopped_by(self, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {

@@ -200,20 +200,38 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         };
         let better = thresholds.in_part(there.reading.searched().share()).better;
         let turned = reading::nats(there.climb.top(), here.climb.top(), better) > nats;
-        let (first, second) = if turned { (there, here) } else { (here, there) };
-        let mut found = first.search.finish(first.climb);
+        let (mut first, second) = if turned { (there, here) } else { (here, there) };
+        let other = second.reading;
+        let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
+        let less = |(top, added): (&Node, &[usize])| {
+            if stop() { None } else { reading::with_less(top, added, &fitter, better) }
+        };
+        // What is found there, where that is to be preferred.
+        let there = |second: Pursuit<'a, F>, led: Node, top: (&Node, usize)| {
+            let there = second.search.finish_led(second.climb, led);
+            Some(there).filter(|there| reading::nats(there.top(), top, better) > 0.0)
+        };
+        // To look at a set more closely takes as long as the way to it.
+        let grown = first.search.grown(&mut first.climb);
+        let added = first.climb.added(&grown);
+        let mut second = Some(second);
+        if let Some(led) = less((&grown, &added))
+            && let Some(second) = second.take()
+            && let Some(there) = there(second, led, (&grown, added.len()))
+        {
+            return (other, there);
+        }
+        let mut found = first.search.finish_grown(first.climb, grown);
         if stop() && !found.added.is_empty() {
             found.stopped = true;
             found.remarks.push(Remark::OtherReadingUnasked);
             return (first.reading, found);
         }
-        let other = second.reading;
-        let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
-        if let Some(less) = reading::with_less(&found, other.family, &fitter, better) {
-            let less = second.search.finish_led(second.climb, less);
-            if reading::nats(less.top(), found.top(), better) > 0.0 {
-                return (other, less);
-            }
+        if let Some(second) = second
+            && let Some(led) = less((found.top().0, &found.added))
+            && let Some(there) = there(second, led, found.top())
+        {
+            return (other, there);
         }
         (first.reading, found)
     }
@@ -304,10 +322,13 @@ impl<'a> Run<'a> {
         here: &'a Reading<'a, F>,
         there: Option<&'a (Reading<'a, F>, f64)>,
     ) -> Begun<'a, F> {
-        let there = there.map(|(there, nats)| (there, *nats));
+        let (first, second) = rayon::join(
+            || self.pursuit(here, Search::base),
+            || there.map(|(there, nats)| (self.pursuit(there, Search::base_in_time), *nats)),
+        );
         Begun {
-            here: self.pursuit(here, Search::base),
-            there: there.map(|(there, nats)| (self.pursuit(there, Search::base_in_time), nats)),
+            here: first,
+            there: second,
             thresholds: self.thresholds.in_part(here.whole.asked()),
             stop: self.stop,
             until: self.settings.time_limit.and_then(|limit| self.started.checked_add(limit)),

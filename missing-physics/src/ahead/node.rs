@@ -127,6 +127,11 @@ impl Node {
             .max(0.4 * statistics::rms(&self.errors, f64::INFINITY))
     }
 
+    /// Terms that a base model does not have, in the order of this one.
+    pub fn added_to(&self, base: &Self) -> Vec<usize> {
+        self.model.terms.iter().copied().filter(|t| !base.model.terms.contains(t)).collect()
+    }
+
     /// Terms without those that every model has.
     pub fn effects<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<usize> {
         self.model.terms.iter().copied().filter(|t| !family.terms()[*t].always).collect()

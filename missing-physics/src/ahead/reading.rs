@@ -5,7 +5,6 @@
 //! count for it where both predict alike.
 
 use super::fit::Fitter;
-use super::found::Found;
 use super::node::Node;
 use crate::family::ModelFamily;
 
@@ -24,20 +23,20 @@ pub fn nats(here: (&Node, usize), there: (&Node, usize), better: f64) -> f64 {
     }
 }
 
-/// What was found without one of its effects, where the other reading, whose `fitter` this is, does as well without.
+/// A model without one of the effects that were `added` to it, where the other reading, whose `fitter` this is, does as
+/// well without.
 pub fn with_less<F: ModelFamily + ?Sized>(
-    found: &Found,
-    other: &F,
+    top: &Node,
+    added: &[usize],
     fitter: &Fitter<'_, F>,
     better: f64,
 ) -> Option<Node> {
-    let (top, effects) = found.top();
-    if effects == 0 {
+    if added.is_empty() {
         return None;
     }
     let all = fitter.refit(top.model.clone(), top.setting, STEPS);
-    let without = found.added.iter().map(|term| {
-        let without = fitter.refit(all.model.without(other, *term), all.setting, STEPS);
+    let without = added.iter().map(|term| {
+        let without = fitter.refit(all.model.without(fitter.family(), *term), all.setting, STEPS);
         (gain(&without, top), without)
     });
     let best = without.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -71,23 +70,18 @@ mod tests {
         assert_eq!(nats((&good, 1), (&good, 2), 20.0), 20.0);
     }
 
-    /// A search's result: these models, one effect more each.
-    fn result(plant: &Plant, added: &[usize], rungs: Vec<Node>) -> Found {
-        Found { added: added.to_vec(), rungs, ..Found::of(model(plant, &[])) }
-    }
-
     #[test]
     fn a_reading_in_which_an_effect_does_nothing_needs_less() {
         let wave: (usize, &[f64]) = (WAVE, &[0.05]);
         let both = Plant::new(2, &[wave, (BEAT, &[0.03])]);
-        let rungs = vec![model(&both, &[wave]), model(&both, &[wave, (BEAT, &[0.03])])];
-        let found = result(&both, &[WAVE, BEAT], rungs);
+        let top = model(&both, &[wave, (BEAT, &[0.03])]);
+        let less = |added: &[usize], other: &Plant| {
+            with_less(&top, added, &Fitter::new(other, other), 20.0)
+        };
         // The same noise, and no beat in it.
         let other = Plant::new(2, &[wave]);
-        let less = |found, other: &Plant| with_less(found, other, &Fitter::new(other, other), 20.0);
-        assert_eq!(less(&found, &other).unwrap().effects(&other), [WAVE]);
-        assert!(less(&found, &both).is_none());
-        let nothing = result(&both, &[], Vec::new());
-        assert!(less(&nothing, &other).is_none());
+        assert_eq!(less(&[WAVE, BEAT], &other).unwrap().effects(&other), [WAVE]);
+        assert!(less(&[WAVE, BEAT], &both).is_none());
+        assert!(less(&[], &other).is_none());
     }
 }

@@ -62,8 +62,7 @@ pub fn unknown<F: ModelFamily + ?Sized>(
     base: &Node,
     node: &Node,
 ) -> Option<(usize, Refusal)> {
-    let added = node.model.terms.iter().filter(|term| !base.model.terms.contains(term));
-    let added: Vec<usize> = added.copied().collect();
+    let added = node.added_to(base);
     if added.is_empty() {
         return None;
     }

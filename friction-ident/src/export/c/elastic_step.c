@@ -23,6 +23,7 @@ static void take_step(Plant *m, double duration)
 #if @SOLVES@
     solve(m);
 #else
+    m->displacement = 0.0;
     newton(m);
     m->taken = m->left;
     commit(m);

@@ -11,11 +11,10 @@ static void commit(Plant *m)
     (void)m;
 @COMMIT@}
 
-/* Mean velocity with the elements, from no displacement. */
+/* Mean velocity with the elements, from the displacement at hand. */
 static void newton(Plant *m)
 {
     int k;
-    m->displacement = 0.0;
     for (k = 0; k <= @ITERATIONS@; k++) {
         const double r = m->left;
         double linear;

@@ -51,6 +51,7 @@ static void take_piece(Plant *m)
     m->inertia = 2.0 * MASS + m->left * slope;
     m->push = 2.0 * MASS * m->v + m->left * others;
 #if @ATTACHED@
+    m->displacement = m->left * m->v;
     newton(m);
 #else
     m->mean = m->push / m->inertia;

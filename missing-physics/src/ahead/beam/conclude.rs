@@ -1,5 +1,7 @@
 //! The size of the set, what is not needed, and the answer.
 
+use rayon::prelude::*;
+
 use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::Found;
@@ -48,12 +50,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// Takes out what is not needed, and says what each of the rest is worth.
     pub(super) fn prune(&mut self, climb: &Climb, mut best: Node) -> (Node, Costs) {
         loop {
-            let mut costs = Costs::new();
-            for term in Self::added(&climb.base, &best) {
+            let each = Self::added(&climb.base, &best).into_par_iter().map(|term| {
                 let without = self.without(climb, &best, term);
-                let cost = self.comparison.compare(&without, &best);
-                costs.push((term, cost, without));
-            }
+                (term, self.comparison.compare(&without, &best), without)
+            });
+            let mut costs: Costs = each.collect();
             costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
             let better = self.thresholds.better;
             let goes = costs

@@ -4,6 +4,8 @@
 //! two are not what the recording shows. One comparison decides, in both directions: the effects stay that are needed
 //! beside it, and so does an effect that is one shape of it (a drift) where it predicts as well.
 
+use rayon::prelude::*;
+
 use super::{Climb, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::node::Node;
@@ -40,14 +42,22 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The rival that does most: takes effects back, then gains.
     fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<Does> {
         let rivals = self.ahead.rivals();
-        let each = rivals.iter().filter_map(|rival| self.rival(climb, last, rival));
+        let free = rivals.into_par_iter().filter_map(|rival| {
+            let free = self.free(climb, last, &rival)?;
+            Some((rival, free))
+        });
+        let free: Vec<(Rival, Node)> = free.collect();
+        let each = free.into_iter().filter_map(|(rival, free)| {
+            if (self.stop)() { None } else { self.rival(climb, last, (&rival, free)) }
+        });
         each.max_by(|a, b| {
             let order = (a.instead_of > 0).cmp(&(b.instead_of > 0));
             order.then(a.nats.total_cmp(&b.nats))
         })
     }
 
-    fn rival(&mut self, climb: &Climb, last: &Node, rival: &Rival) -> Option<Does> {
+    /// The base model with a rival, where that promises something.
+    fn free(&self, climb: &Climb, last: &Node, rival: &Rival) -> Option<Node> {
         let base = &climb.base;
         let added = Self::added(base, last);
         let least = PROMISED * self.thresholds.better;
@@ -67,7 +77,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if (self.stop)() {
             return None;
         }
-        let free = self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2));
+        Some(self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2)))
+    }
+
+    /// What a rival does, with which the base model is `free`.
+    fn rival(&mut self, climb: &Climb, last: &Node, (rival, free): (&Rival, Node)) -> Option<Does> {
+        let base = &climb.base;
+        let added = Self::added(base, last);
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
         let alone = self.does_as_much(base, last, &free, added.len(), rival);
         // Of more effects, and beside some that leave something, some may be needed beside it; beside what leaves nothing

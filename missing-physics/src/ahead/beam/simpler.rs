@@ -5,6 +5,8 @@
 //! than at zero behind the bend of a pendulum. So the simpler ones are asked in the place of each effect of the last set, and
 //! where none does, one beside what every system has: with no more parameters in all, where they predict better.
 
+use rayon::prelude::*;
+
 use super::grow::CATCHES_UP;
 use super::{Climb, Costs, STEPS, Search};
 use crate::ahead::node::Node;
@@ -66,9 +68,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let screened = screen(self.family, self.ahead, without, &open, false);
         let clear = self.thresholds.clear(self.comparison.compare(&climb.base, best).nats);
         let least = self.promising().max(CATCHES_UP * (cost - clear));
-        for start in self.chosen(&screened.promises, least, self.thresholds.beam) {
+        let starts = self.chosen(&screened.promises, least, self.thresholds.beam);
+        let others = starts.into_par_iter().map(|start| {
             let other = self.begun(start, without.setting)?;
-            let other = self.fitter().settled(other, STEPS.1);
+            Some(self.fitter().settled(other, STEPS.1))
+        });
+        for other in others.collect::<Option<Vec<Node>>>()? {
             let by = self.comparison.compare(best, &other);
             let is_one = refused(self.family, self.ahead, &climb.base, &other).is_none();
             let leaves_more = self.is_complete(best) && !self.is_complete(&other);
