@@ -21,6 +21,7 @@ mod surrogate;
 
 use std::ops::Range;
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use missing_physics::measurement::spread;
 use missing_physics::{Hold, Recording};
@@ -59,6 +60,27 @@ const REPEATED: &str = "repeats the sample before it while the axis moves";
 const UNSETTLED: &str = "start of a piece";
 /// Plants in the widest vector.
 const VECTOR: usize = 8;
+
+/// Calls of [`Predictor::errors`] that are at work.
+static AT_WORK: AtomicUsize = AtomicUsize::new(0);
+
+/// One of them.
+struct AtWork {
+    /// Their number, this one among them, when it began.
+    calls: usize,
+}
+
+impl AtWork {
+    fn begin() -> Self {
+        Self { calls: AT_WORK.fetch_add(1, Ordering::Relaxed) + 1 }
+    }
+}
+
+impl Drop for AtWork {
+    fn drop(&mut self) {
+        AT_WORK.fetch_sub(1, Ordering::Relaxed);
+    }
+}
 
 /// What is needed of a recording to predict it.
 #[derive(Clone, Debug)]
@@ -244,7 +266,9 @@ impl Predictor {
     /// Prediction errors of models of the same effects, each at its own setting, at the samples that count: m or
     /// rad, each brought to the size that it would have at a typical sample.
     pub fn errors(&self, models: &[(Model, usize)]) -> Vec<Vec<f64>> {
-        let threads = rayon::current_num_threads().max(1);
+        // Few lanes cost as much as many: where other calls keep the threads busy these are not dealt out among them.
+        let work = AtWork::begin();
+        let threads = (rayon::current_num_threads() / work.calls).max(1);
         let beside = self.teams.iter().map(Vec::len).max().unwrap_or(1);
         let each = models.len().div_ceil(threads);
         let each = each.clamp(LANES.0.div_ceil(beside), LANES.1.div_ceil(beside));
