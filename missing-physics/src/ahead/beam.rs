@@ -40,6 +40,8 @@ const BASE: usize = 8;
 /// Most valleys that are left for a lower one, and by how much lower it must be.
 const RESCANS: usize = 3;
 const LOWER: f64 = 0.99;
+/// Times that simpler effects are asked in the place of those of the last set.
+const ROUNDS: usize = 4;
 /// A model is well inside the budget below this multiple of it.
 const INSIDE: f64 = 1.12;
 /// A form must be better than another one by this much to take its place, nats.
@@ -197,15 +199,17 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             best = self.beside_usual(&mut climb, best);
         }
         let mut best = self.usual_instead(&climb, best);
-        let (mut simplest, mut rival, mut unknown) = (false, None, None);
+        let (mut rounds, mut rival, mut unknown) = (0, None, None);
         loop {
             let (needed, costs) = self.prune(&climb, best);
-            if !simplest {
-                simplest = true;
+            // What took the place of one effect may leave another one to a simpler one, too.
+            if rounds < ROUNDS {
+                rounds += 1;
                 if let Some(simpler) = self.simplified(&climb, &needed, &costs) {
                     best = simpler;
                     continue;
                 }
+                rounds = ROUNDS;
             }
             let last = self.plainest(needed, &costs);
             if let Some(base) = self.with_other_law(&climb, &last) {

@@ -11,7 +11,7 @@ use super::grow::CATCHES_UP;
 use super::{Climb, Costs, STEPS, Search};
 use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
-use crate::ahead::screen::screen;
+use crate::ahead::screen::{Promise, screen};
 use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason};
 
@@ -48,7 +48,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// The set `best` with an effect of fewer than `below` parameters beside a model without one of its effects, which it
     /// loses `cost` nats without.
-    fn in_the_place_of(
+    pub(super) fn in_the_place_of(
         &mut self,
         climb: &Climb,
         best: &Node,
@@ -67,8 +67,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         let screened = screen(self.family, self.ahead, without, &open, false);
         let clear = self.thresholds.clear(self.comparison.compare(&climb.base, best).nats);
-        let least = self.promising().max(CATCHES_UP * (cost - clear));
-        let starts = self.chosen(&screened.promises, least, self.thresholds.beam);
+        let starts = self.chosen(&screened.promises, self.promising(), self.thresholds.beam);
+        // Beside a model that lacks much the first order errs: the first one is fitted in any case.
+        let catches_up = |promise: &Promise| promise.gain > CATCHES_UP * (cost - clear);
+        let starts: Vec<&Promise> = starts
+            .into_iter()
+            .enumerate()
+            .filter(|(place, promise)| *place == 0 || catches_up(promise))
+            .map(|(_, promise)| promise)
+            .collect();
         let others = starts.into_par_iter().map(|start| {
             let other = self.begun(start, without.setting)?;
             Some(self.fitter().settled(other, STEPS.1))

@@ -57,3 +57,17 @@ fn what_shows_only_beside_a_usual_effect_takes_the_place_of_one_of_as_many_param
     assert_eq!(beside_usual(&[PUSH], &[tone], &[tone]), [TONE]);
     assert_eq!(beside_usual(&[PUSH], &[push, beat], &[(WAVE, &[0.01])]), [WAVE]);
 }
+
+#[test]
+fn the_most_promising_one_is_fitted_however_little_of_what_is_lost_it_promises() {
+    let push: (usize, &[f64]) = (PUSH, &[0.05]);
+    let plant = Plant::new(6, &[push, (BEAT, &[0.05])]);
+    let (best, without) = (node(&plant, &[push, (TONE, &[0.01, 5.0])]), node(&plant, &[push]));
+    for (cost, most) in [(100.0, 3), (1e9, 1)] {
+        let mut search = search(&plant, Thresholds { beam: 3, ..narrow() });
+        let climb = climb(&plant, Vec::new());
+        let other = search.in_the_place_of(&climb, &best, cost, &without, 2).unwrap();
+        assert_eq!(other.effects(&plant), [PUSH, BEAT]);
+        assert!((1..=most).contains(&search.decisions.len()), "{}", search.decisions.len());
+    }
+}
