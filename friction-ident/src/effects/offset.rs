@@ -1,8 +1,13 @@
 //! A constant force: weight of an inclined axis, pre-tension, zero error of the current sensor.
 
-use super::{About, Apart, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{
+    About, Apart, AsFound, CLaw, Effect, Motion, Parameter, Parameters, Refused, Slot, Smooth,
+};
 use crate::axis::Quantity;
 use crate::simd::add_to;
+
+/// Share of the force, rms, below which a constant one is none: no drive sets its current so finely (12 to 14 bits).
+const NOTHING: f64 = 1e-4;
 
 /// `F_0`.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +37,12 @@ impl Effect for Offset {
     /// A drive that is not balanced to the last newton, and an amplifier, have it.
     fn is_usual(&self) -> bool {
         true
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        let (value, limit) = (found.values[0].abs(), NOTHING * found.force);
+        let meaning = "it is less than a ten-thousandth of the force";
+        (value < limit).then_some(Refused { name: "F_0", value, limit, unit_of: "F_0", meaning })
     }
 
     fn c_law(&self) -> Option<CLaw> {

@@ -248,8 +248,8 @@ impl Ahead for View<'_> {
         rivals(self.family)
     }
 
-    fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
-        self.family.vanishes(model)
+    fn vanishes(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
+        self.family.vanishes(model, base)
     }
 
     fn starts(&self, term: usize) -> usize {

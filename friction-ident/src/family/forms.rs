@@ -199,11 +199,12 @@ impl FrictionFamily {
         Some((term, self.second_body(term)?))
     }
 
-    /// A term that is no such effect as it was fitted, and why.
-    pub(super) fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
+    /// A term beyond those of a base model that is no such effect as it was fitted, and why.
+    pub(super) fn vanishes(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
         let vanished = self.given.as_ref().and_then(|given| given.vanishes(self, model));
         vanished.or_else(|| {
-            model.terms.iter().enumerate().find_map(|(place, term)| {
+            let mut added = model.terms.iter().enumerate().filter(|(_, t)| !base.terms.contains(t));
+            added.find_map(|(place, term)| {
                 let effect = self.effects[term.checked_sub(1)?];
                 let full = self.in_full(effect, *term, &model.values[model.range(self, place)]);
                 let of = |k: usize| full.iter().map(|of| of[k]).collect::<Vec<f64>>();
@@ -316,7 +317,7 @@ mod tests {
         };
         let values: Vec<f64> = family.terms[term].parameters.iter().map(value).collect();
         let model = Fitted { terms: vec![0], values: vec![20.0] }.with(term, &values);
-        let (refused, why) = family.vanishes(&model)?;
+        let (refused, why) = family.vanishes(&model, &Fitted::default())?;
         assert_eq!(refused, term);
         Some(why)
     }
@@ -450,13 +451,32 @@ mod tests {
     }
 
     #[test]
+    fn a_constant_force_of_next_to_nothing_is_none_unless_the_base_has_it() {
+        let family = family();
+        let most = 1e-4 * family.force();
+        for sign in [1.0, -1.0] {
+            assert_eq!(said(&family, "offset", &[("F_0", 1.01 * sign * most)]), None);
+            let Some(Refusal::NotThatEffect { value, limit, .. }) =
+                said(&family, "offset", &[("F_0", 0.99 * sign * most)])
+            else {
+                panic!("nothing is a constant force")
+            };
+            assert_eq!((value.name.as_str(), value.unit.as_str(), limit), ("F_0", "N", most));
+        }
+        let offset = family.terms.iter().position(|term| term.name == "offset").unwrap();
+        let base = Fitted { terms: vec![0], values: vec![20.0] }.with(offset, &[0.0]);
+        assert_eq!(family.vanishes(&base, &base), None);
+    }
+
+    #[test]
     fn a_gap_must_be_wider_than_friction_turns_over_anyway() {
         let family = family();
         let of = |name: &str| family.terms.iter().position(|term| term.name == name).unwrap();
         let base = Fitted { terms: vec![0], values: vec![20.0] }.with(of("coulomb"), &[8.0]);
         let refused = |contact: Option<(&str, &[f64])>, b: f64| {
             let with = contact.map(|(name, values)| base.clone().with(of(name), values));
-            family.vanishes(&with.unwrap_or(base.clone()).with(of("backlash"), &[4.0, b]))
+            let model = with.unwrap_or(base.clone()).with(of("backlash"), &[4.0, b]);
+            family.vanishes(&model, &base)
         };
         // Each gives 8e-4 m: a spring, and five elements with a fifth of the level each.
         let free = [1.5 * 8e-4 / (0.666 * 1.5), 0.0, 0.0, 0.0, 0.0, 1e3];

@@ -39,7 +39,7 @@ pub fn refused<F: ModelFamily + ?Sized>(
             }
         }
     }
-    ahead.vanishes(&node.model)
+    ahead.vanishes(&node.model, &base.model)
 }
 
 /// The effect of a model that is not told, and why, if any: it is none as it was fitted, or the data do not tell what makes

@@ -289,7 +289,7 @@ impl Ahead for Plant {
         let leap = |omega: &f64| model.without(self, TONE).with(TONE, &[size, *omega]);
         self.leaps.iter().map(leap).collect()
     }
-    fn vanishes(&self, model: &Fitted) -> Option<(usize, Refusal)> {
+    fn vanishes(&self, model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
         let refusal = Refusal::AtLimit { parameter: "it is none".into() };
         self.none.filter(|term| model.terms.contains(term)).map(|term| (term, refusal))
     }

@@ -91,8 +91,8 @@ pub trait Ahead: Sync {
         Vec::new()
     }
 
-    /// A term of a model that is no such effect as it was fitted (a gap of no width), and why.
-    fn vanishes(&self, _model: &Fitted) -> Option<(usize, Refusal)> {
+    /// A term that a model has beyond `base` and that is no such effect as it was fitted (a gap of no width), and why.
+    fn vanishes(&self, _model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
         None
     }
 
