@@ -39,8 +39,8 @@ fn what_another_search_lacks_is_found_beside_where_it_led() {
 
 #[test]
 fn a_set_that_predicts_no_better_than_what_is_known_is_not_followed() {
-    let (there, beside): ((usize, &[f64]), (usize, &[f64])) =
-        ((TONE, &[0.05, 5.0]), (TONE, &[0.01, 25.0]));
+    let there: (usize, &[f64]) = (TONE, &[0.05, 5.0]);
+    let beside: (usize, &[f64]) = (TONE, &[0.01, 25.0]);
     let plant = Plant::new(31, &[there]);
     let search = search(&plant, narrow());
     let mut known = climb(&plant, vec![vec![node(&plant, &[there])]]);
