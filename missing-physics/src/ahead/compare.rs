@@ -233,6 +233,22 @@ mod tests {
     }
 
     #[test]
+    fn the_chance_of_a_gain_is_that_of_a_normal_error() {
+        let p = |nats, error| Difference { nats, error }.p_value();
+        for (nats, expected) in [
+            (0.0, 0.5),
+            (3.0 * 1.959_963_984_540_054, 0.025),
+            (-3.0, 0.841_344_746_068_542_9),
+            (30.0, 7.619_853_024_160_6e-24),
+        ] {
+            let found = p(nats, 3.0);
+            assert!((found / expected - 1.0).abs() < 1e-6, "{nats}: {found}");
+        }
+        // Where every block says the same there is no doubt.
+        assert_eq!((p(1.0, 0.0), p(0.0, 0.0), p(-1.0, 0.0)), (0.0, 1.0, 1.0));
+    }
+
+    #[test]
     fn a_comparison_the_other_way_round_says_the_opposite() {
         let plant = Plant::new(1, &[(WAVE, &[WEAK])]);
         let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
