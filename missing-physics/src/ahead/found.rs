@@ -13,6 +13,7 @@ use super::{Ahead, local};
 use crate::family::Series;
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Lacking, NoCause, Refusal, Remains, Remark};
+use crate::statistics::basis::dot;
 use crate::task::Thresholds;
 
 /// Steps of a refit on all of a recording that was searched in part.
@@ -283,8 +284,9 @@ impl Found {
         }
         let still = self.still_lacking(family, ahead, (thresholds.local, MOST));
         // A few wild samples that are left speak against what explains less than they are.
-        let explained = square(&self.base.errors) - square(&top.errors);
-        let wild = local::faults(&top.errors).map(|share| share * square(&top.errors));
+        let square = |node: &Node| dot(&node.errors, &node.errors);
+        let explained = square(&self.base) - square(top);
+        let wild = local::faults(&top.errors).map(|share| share * square(top));
         let faulty = wild.is_some_and(|wild| wild > explained) || ahead.faults().is_some();
         if falls && still.is_none() && !faulty && no_cause.is_none() {
             return;
@@ -371,10 +373,6 @@ impl Found {
 pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
     let beyond = |node: &Node| (node.scale / budget).powi(2) - 1.0;
     beyond(base) <= 0.0 || beyond(node) > LEFT * beyond(base)
-}
-
-fn square(errors: &[f64]) -> f64 {
-    errors.iter().map(|error| error * error).sum()
 }
 
 /// What a model leaves, whether its errors show it or not.
@@ -553,7 +551,8 @@ mod tests {
     #[test]
     fn names_go_where_what_is_left_is_in_a_few_wild_samples() {
         let (plant, found) = found(None);
-        let explained = square(&found.base.errors) - square(&found.top().0.errors);
+        let square = |node: &Node| dot(&node.errors, &node.errors);
+        let explained = square(&found.base) - square(found.top().0);
         // A third of what the wave explains is left in one sample, or all of it.
         for (wild, stands) in [(explained / 3.0, true), (explained, false)] {
             let mut found = found.clone();
