@@ -14,8 +14,15 @@ pub const STATE: Target = Target::new(
     |input| resumed(&with_checksum(input)),
 );
 
-const METHODS: [&str; 6] =
-    ["aep-practical", "aep-practical-restarts", "meta-ep", "de", "de-fixed", "cma-es"];
+const METHODS: [&str; 7] = [
+    "aep-practical",
+    "aep-practical-restarts",
+    "aep-lineages",
+    "meta-ep",
+    "de",
+    "de-fixed",
+    "cma-es",
+];
 /// Where the length of the content stands, and where the content begins.
 const LENGTH: usize = 12;
 const CONTENT: usize = 20;

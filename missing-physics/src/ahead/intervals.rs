@@ -18,34 +18,37 @@ pub fn of<F: ModelFamily + ?Sized>(
     of_fit(family, &as_prediction((family, ahead), node))
 }
 
-/// The amplitude of an effect that is largest, by its place among the effect's parameters, and its interval where the
-/// others of the effect keep their proportion to it and its shapes are known: of several that make up for each other none need be
+/// The largest of these amplitudes of an effect (all by their places among its parameters), and its interval where the others
+/// of them keep their proportion to it and the effect's shapes are known: of several that make up for each other none need be
 /// known for the effect to be.
 pub fn of_size<F: ModelFamily + ?Sized>(
     (family, ahead): (&F, &dyn Ahead),
     node: &Node,
     place: usize,
+    amplitudes: &[usize],
 ) -> Option<(usize, Estimate)> {
     let term = &family.terms()[*node.model.terms.get(place)?];
     let range = node.model.range(family, place);
-    let begin = range.start;
-    let is_amplitude = |k: &usize| term.parameters[k - begin].role == Role::Amplitude;
-    let values = &node.model.values;
-    let amplitudes = range.clone().filter(is_amplitude);
-    let largest = amplitudes.max_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs()))?;
+    let values = &node.model.values[range.clone()];
+    let by_size = |a: &&usize, b: &&usize| values[**a].abs().total_cmp(&values[**b].abs());
+    let largest = *amplitudes.iter().max_by(by_size)?;
     let mut fit = as_prediction((family, ahead), node);
-    for k in range.filter(|k| *k != largest) {
+    let columns = &mut fit.jacobian[range];
+    for (k, parameter) in term.parameters.iter().enumerate().filter(|(k, _)| *k != largest) {
+        let goes_along = amplitudes.contains(&k);
+        if parameter.role == Role::Amplitude && !goes_along {
+            continue;
+        }
         let share = values[k] / values[largest];
         // What changes nothing is not moved.
-        let column = std::mem::take(&mut fit.jacobian[k]);
-        fit.jacobian[k] = vec![0.0; column.len()];
-        if is_amplitude(&k) && share.is_finite() {
-            let sum = fit.jacobian[largest].iter_mut().zip(&column);
+        let column = std::mem::take(&mut columns[k]);
+        columns[k] = vec![0.0; column.len()];
+        if goes_along && share.is_finite() {
+            let sum = columns[largest].iter_mut().zip(&column);
             sum.for_each(|(sum, value)| *sum += share * value);
         }
     }
-    let key = term.key(&term.parameters[largest - begin]);
-    Some((largest - begin, of_fit(family, &fit).remove(&key)?))
+    Some((largest, of_fit(family, &fit).remove(&term.key(&term.parameters[largest]))?))
 }
 
 fn of_fit<F: ModelFamily + ?Sized>(family: &F, fit: &Fit) -> BTreeMap<String, Estimate> {

@@ -82,11 +82,30 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         if let Some(parameter) = lost {
             return Some(unknown(parameter, &intervals[&term.key(parameter)]));
         }
-        // A shape that hardly matters lets an amplitude be anything, and so does another amplitude: whether there is any of
-        // it is asked at these shapes and proportions.
+        // A shape that hardly matters lets an amplitude be anything, and so does another amplitude: they are asked at these
+        // shapes and proportions; whether there is any of the effect of all of them, whether more of it than was looked for
+        // would do as well of those of each unit.
         let place = node.model.terms.iter().position(|term| *term == index)?;
-        let (largest, is) = intervals::of_size((family, ahead), node, place)?;
-        let may_be_none = is.low <= 0.0 && is.high >= 0.0;
-        may_be_none.then(|| unknown(&term.parameters[largest], &is))
+        let size_of = |those: &[usize]| intervals::of_size((family, ahead), node, place, those);
+        let amplitudes = amplitudes(&term.parameters);
+        let (largest, is) = size_of(&amplitudes)?;
+        if is.low <= 0.0 && is.high >= 0.0 {
+            return Some(unknown(&term.parameters[largest], &is));
+        }
+        let unit = |k: &usize| &term.parameters[*k].unit;
+        let sizes = amplitudes.chunk_by(|a, b| unit(a) == unit(b)).filter_map(size_of);
+        sizes.map(|(k, is)| (&term.parameters[k], is)).find_map(|(parameter, is)| {
+            let reaches = |limit: f64| limit != 0.0 && (is.low..=is.high).contains(&limit);
+            let beyond = reaches(parameter.lower) || reaches(parameter.upper);
+            beyond.then(|| (index, Refusal::AtLimit { parameter: term.key(parameter) }))
+        })
     })
+}
+
+/// The places of the amplitudes among the parameters of an effect, those of one unit together.
+fn amplitudes(parameters: &[TermParameter]) -> Vec<usize> {
+    let is_one = |k: &usize| parameters[*k].role == Role::Amplitude;
+    let mut amplitudes: Vec<usize> = (0..parameters.len()).filter(is_one).collect();
+    amplitudes.sort_by_key(|k| &parameters[*k].unit);
+    amplitudes
 }

@@ -289,6 +289,16 @@ fn an_effect_is_not_told_whose_shape_the_data_do_not_tell() {
     assert_eq!(wave(0.05), None);
     assert!(matches!(wave(1e-5), Some(Refusal::Unknown { parameter, low, high, .. })
         if parameter == "wave.size" && low < 0.0 && high > 0.0));
+    // What may be more than it may be at most: beside its twin the data do not tell how large it is.
+    let plant = Plant::new(6, &[(WAVE, &[9.9])]);
+    let large = |terms: &[(usize, &[f64])]| {
+        let base = node(&plant, &[]);
+        not_told(&plant, &plant, &base, &node(&plant, terms))
+    };
+    assert_eq!(large(&[(WAVE, &[9.9])]), None);
+    let parameter = "wave.size".to_owned();
+    let twins: [(usize, &[f64]); 2] = [(WAVE, &[9.9]), (TWIN, &[0.05])];
+    assert_eq!(large(&twins), Some((WAVE, Refusal::AtLimit { parameter })));
     // What the base has is not asked.
     let small = node(&plant, &[(TONE, &[1e-5, 5.0])]);
     assert_eq!(not_told(&plant, &plant, &small, &small), None);
