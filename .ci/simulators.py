@@ -172,6 +172,7 @@ IN_MODELICA = (
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory:lag": {"tau_L": 0.01}},
     {"rising-static-friction": {"dF": 2.0, "gamma": 0.1, "v_s": 1e-2}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "rising-static-friction:bond": {"gamma": 0.1}},
+    {"rising-static-friction:ageing": {"B": 0.5, "D_c": 1e-4, "v_c": 1e-2}},
     {"reversal-decay": {"F_r": 1.2, "l": 1e-2}},
     {"backlash": {"F_L": 1.5, "b": 1e-3}},
     {"motor-gain": {"g": 0.9}, "saturation": {"u_max": 12.0}, "actuator-lag": {"tau": 4e-3}},

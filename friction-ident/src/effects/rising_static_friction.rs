@@ -1,5 +1,7 @@
 //! Rising static friction: the longer the rest, the harder the breakaway.
 
+mod ageing;
+
 use super::{
     About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
@@ -52,7 +54,7 @@ static BOND_ABOUT: About = About {
     reference: REFERENCE,
 };
 static BOND: Bond = Bond;
-static FORMS: [&dyn Effect; 1] = [&BOND];
+static FORMS: [&dyn Effect; 2] = [&BOND, &ageing::Ageing];
 
 impl Effect for RisingStaticFriction {
     fn about(&self) -> &'static About {
@@ -220,7 +222,7 @@ mod tests {
     }
 
     /// Force at which a table breaks away after `dwell` s of rest, following a slide.
-    fn breakaway(effect: &str, values: &[(&str, f64)], dwell: f64) -> f64 {
+    pub(super) fn breakaway(effect: &str, values: &[(&str, f64)], dwell: f64) -> f64 {
         let model = Model::new(Axis::Linear, 1.0)
             .and_then(|m| m.with("coulomb", &[("F_C", 5.0)]))
             .and_then(|m| m.with("stribeck", &[("dF", 2.0), ("v_s", 1e-3)]))

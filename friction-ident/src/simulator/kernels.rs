@@ -288,9 +288,12 @@ vectorised! {
             x[i] += displacement[i];
             time[i] += if moves { spent } else { 0.0 };
             slope[i] = if held { 0.0 } else if moves { change / r } else { slope[i] };
-            dwell[i] = if held { dwell[i] + r } else if stops { 0.0 } else { dwell[i] };
+            // Where an observer moved the velocity of what rests, friction takes it back: that is no slide.
+            let breaks_away = sliding[i] > 0.0 || change * direction[i] > 0.0;
+            let rests_on = held || stops && sliding[i] == 0.0;
+            dwell[i] = if rests_on { dwell[i] + spent } else if stops { 0.0 } else { dwell[i] };
             v[i] = if stops { 0.0 } else if moves { end } else { v0 };
-            sliding[i] = if moves { if stops { 0.0 } else { 1.0 } } else { sliding[i] };
+            sliding[i] = if moves { f64::from(!stops && breaks_away) } else { sliding[i] };
             left[i] = if stops && !held { r - spent } else { 0.0 };
         }
     }

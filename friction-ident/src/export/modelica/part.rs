@@ -164,6 +164,13 @@ impl Part {
                 ..level("{dF}*dwell/(dwell + {gamma})/(1 + (@w/{v_s})^2)")
             },
             "rising-static-friction:bond" => bond(),
+            "rising-static-friction:ageing" => Self {
+                level: "{B}*log(1 + {}_age*{v_c}/{D_c})".into(),
+                declared: vec!["Real {}_age \"age of the contacts\";".into()],
+                initial: vec!["{}_age = if v == 0 then 1 else {D_c}/abs(v);".into()],
+                equations: vec!["der({}_age) = 1 - {}_age*abs(v)/{D_c};".into()],
+                ..Self::default()
+            },
             "frictional-memory" => {
                 Self { level_velocity: "delay(v, {tau_L})".into(), ..Self::default() }
             }
