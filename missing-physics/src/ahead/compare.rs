@@ -304,6 +304,15 @@ mod tests {
     }
 
     #[test]
+    fn noise_gains_half_a_nat_for_each_value_of_a_rival() {
+        let plant = Plant::new(1, &[]);
+        let comparison = Comparison::new(&plant, &plant);
+        let nodes = [vec![], vec![WAVE], vec![RIVAL]].map(|terms| fitted(&plant, &terms));
+        let doubts = nodes.each_ref().map(|node| comparison.doubt(node) / node.correlation());
+        assert_eq!(doubts, [0.0, 0.0, 0.5]);
+    }
+
+    #[test]
     fn an_amplitude_is_expected_to_be_like_those_of_the_same_effect() {
         let plant = Plant::new(1, &[]);
         let model = Plant::model(&[(BENT, &[0.05, 0.01]), (TONE, &[0.2, 4.0])]);
