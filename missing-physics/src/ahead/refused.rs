@@ -95,7 +95,9 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         let unit = |k: &usize| &term.parameters[*k].unit;
         let sizes = amplitudes.chunk_by(|a, b| unit(a) == unit(b)).filter_map(size_of);
         sizes.map(|(k, is)| (&term.parameters[k], is)).find_map(|(parameter, is)| {
-            let reaches = |limit: f64| limit != 0.0 && (is.low..=is.high).contains(&limit);
+            // One that may be 0 is not determined by itself: an offset makes up for it.
+            let known = is.low > 0.0 || is.high < 0.0;
+            let reaches = |limit: f64| known && (is.low..=is.high).contains(&limit);
             let beyond = reaches(parameter.lower) || reaches(parameter.upper);
             beyond.then(|| (index, Refusal::AtLimit { parameter: term.key(parameter) }))
         })

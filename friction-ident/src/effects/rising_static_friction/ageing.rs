@@ -68,6 +68,12 @@ impl Effect for Ageing {
         })
     }
 
+    /// A base model may have it; it is not searched for: on a servo it took a place among what is fitted from the effect
+    /// that is there.
+    fn is_only_flexible(&self) -> bool {
+        true
+    }
+
     /// Its levels differ more by the velocity than by the distance.
     fn few_trials(&self) -> Option<&'static [usize]> {
         Some(&[4, 5])
