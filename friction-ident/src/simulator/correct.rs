@@ -82,6 +82,25 @@ mod tests {
     }
 
     #[test]
+    fn a_rest_goes_on_where_friction_takes_back_what_an_observer_moved() {
+        // 2 N leave 3 N of the friction, 1 m/s^2: the second lane needs more than a step to come to rest again.
+        let mut plants = Plants::uniform(&with(&[]), 2).watched();
+        for k in 0..100 {
+            plants.step(&[STEP; 2], &[2.0; 2]);
+            assert_eq!(plants.sliding(), [0.0; 2]);
+            plants.correct(&[0.0; 2], &[3e-4, if k % 5 == 0 { 2.5e-3 } else { 0.0 }]);
+        }
+        assert!((plants.dwell[0] - 100.0 * STEP).abs() < 1e-9, "{}", plants.dwell[0]);
+        assert!(plants.dwell[1] > 40.0 * STEP, "{}", plants.dwell[1]);
+        // A slide ends it: the next rest begins where that one stops.
+        plants.step(&[STEP; 2], &[20.0; 2]);
+        assert_eq!(plants.sliding(), [1.0; 2]);
+        (0..20).for_each(|_| plants.step(&[STEP; 2], &[0.0; 2]));
+        assert_eq!(plants.sliding(), [0.0; 2]);
+        assert!(plants.dwell.iter().all(|dwell| *dwell < 20.0 * STEP), "{:?}", plants.dwell);
+    }
+
+    #[test]
     fn a_contact_that_holds_is_no_ratchet() {
         for (name, values) in CONTACTS {
             let [plain, corrected] = pulled(&with(&[(name, values)]), 2.0, 1e-8);

@@ -74,11 +74,6 @@ impl Effect for Ageing {
         true
     }
 
-    /// Its levels differ more by the velocity than by the distance.
-    fn few_trials(&self) -> Option<&'static [usize]> {
-        Some(&[4, 5])
-    }
-
     fn memory(&self) -> Option<&dyn Memory> {
         Some(self)
     }
