@@ -42,13 +42,14 @@ impl Follower {
         self.lag.map(|(decay, _)| decay)
     }
 
-    /// Takes the newest velocity and gives the one that the level follows, m/s or rad/s.
+    /// Takes the newest velocity and gives what the level follows, m/s or rad/s.
     pub fn follow(&mut self, velocity: f64) -> f64 {
         if let Some(delay) = &mut self.delay {
             return delay.pass(velocity);
         }
         if let Some((decay, state)) = &mut self.lag {
-            *state = velocity + (*state - velocity) * *decay;
+            let speed = velocity.abs();
+            *state = speed + (*state - speed) * *decay;
             return *state;
         }
         velocity

@@ -13,7 +13,7 @@ use crate::simd::{exp, vectorised};
 #[derive(Clone, Copy, Debug)]
 pub struct FrictionalMemory;
 
-/// The level sees `v` through a first-order lag.
+/// The level sees the speed through a first-order lag, as a film of oil or the age of contacts follows it.
 #[derive(Clone, Copy, Debug)]
 struct Lagged;
 
@@ -34,7 +34,7 @@ static ABOUT: About = About {
 static LAGGED_ABOUT: About = About {
     name: "frictional-memory:lag",
     title: "frictional memory, first order",
-    equation: "the friction level follows w with tau_L w' + w = v",
+    equation: "the friction level follows w with tau_L w' + w = |v|",
     parameters: &[TIME],
     slots: &[Slot::Memory],
     shows: SHOWS,
@@ -120,10 +120,10 @@ impl Effect for Lagged {
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             states: 1,
-            start: "{s0} = velocity;",
+            start: "{s0} = fabs(velocity);",
             recall: "m->level_velocity = {s0};",
             remember: "if (m->taken > 0.0) {
-    const double mean = m->displacement / m->taken;
+    const double mean = fabs(m->displacement) / m->taken;
     {s0} = mean + ({s0} - mean) * exp(-m->taken / {tau_L});
 }",
             ..CDynamics::NONE
@@ -149,7 +149,7 @@ impl Memory for Lagged {
     }
 
     fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state[0] = velocity;
+        state[0] = velocity.abs();
     }
 
     fn recall(
@@ -169,13 +169,13 @@ impl Memory for Lagged {
 }
 
 vectorised! {
-    /// Exact for the mean velocity of a piece.
+    /// Exact for the mean speed of a piece, which goes one way.
     fn follow(tau: &[f64], duration: &[f64], displacement: &[f64], state: &mut [f64]) {
         let n = state.len();
         let (tau, duration, displacement) = (&tau[..n], &duration[..n], &displacement[..n]);
         for i in 0..n {
             let goes = duration[i] > 0.0;
-            let mean = displacement[i] / if goes { duration[i] } else { 1.0 };
+            let mean = displacement[i].abs() / if goes { duration[i] } else { 1.0 };
             let next = mean + (state[i] - mean) * exp(-duration[i] / tau[i]);
             state[i] = if goes { next } else { state[i] };
         }
@@ -220,6 +220,24 @@ mod tests {
             let t = k as f64 * 1e-3;
             let seen = 0.1 * (t - 0.02 * (1.0 - (-t / 0.02).exp()));
             assert!((force - hump(seen)).abs() < 5e-3, "sample {k}: {force} {}", hump(seen));
+        }
+    }
+
+    #[test]
+    fn the_first_order_form_remembers_the_speed_through_a_reversal() {
+        // As much hump at 0.1 m/s either way, and none of it comes back within a reversal far faster than the lag.
+        let model = Model::new(Axis::Linear, 1.0)
+            .and_then(|m| m.with("stribeck", &[("dF", 4.0), ("v_s", 5e-3)]))
+            .and_then(|m| m.with("frictional-memory:lag", &[("tau_L", 0.02)]))
+            .unwrap();
+        let time: Vec<f64> = (0..300).map(|k| f64::from(k) * 1e-4).collect();
+        let velocity: Vec<f64> =
+            time.iter().map(|t| if *t < 0.015 { 0.1 } else { -0.1 }).collect();
+        let position: Vec<f64> = time.iter().map(|t| 0.0015 - 0.1 * (t - 0.015).abs()).collect();
+        let none = vec![0.0; 300];
+        let motion = MeasuredMotion::new(&time, &position, &velocity, &none).unwrap();
+        for (force, velocity) in force_along(&model, &motion).iter().zip(velocity) {
+            assert!((force - hump(0.1) * velocity.signum()).abs() < 1e-3, "{force}");
         }
     }
 

@@ -11,6 +11,7 @@ mod identified;
 mod led;
 mod other_law;
 mod outdone;
+mod race;
 mod rivals;
 mod shape;
 mod simpler;

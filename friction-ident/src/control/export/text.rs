@@ -376,10 +376,10 @@ impl<'a> Writer<'a> {
             }
             line("c->head = (c->head + 1) % LINE;");
         } else if lag {
-            line("c->desired = reference_velocity + (c->desired - reference_velocity) * DECAY;");
+            line("c->desired = fabs(reference_velocity) + (c->desired - fabs(reference_velocity)) * DECAY;");
             line("w = c->desired;");
             if bond {
-                line("c->measured = measured + (c->measured - measured) * DECAY;");
+                line("c->measured = fabs(measured) + (c->measured - fabs(measured)) * DECAY;");
                 line("bond = bond_of(c, c->measured);");
             }
         } else {

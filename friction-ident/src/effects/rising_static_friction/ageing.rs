@@ -68,12 +68,6 @@ impl Effect for Ageing {
         })
     }
 
-    /// A base model may have it; it is not searched for: on a servo it took a place among what is fitted from the effect
-    /// that is there.
-    fn is_only_flexible(&self) -> bool {
-        true
-    }
-
     fn memory(&self) -> Option<&dyn Memory> {
         Some(self)
     }

@@ -176,9 +176,9 @@ impl Part {
             }
             "frictional-memory:lag" => Self {
                 level_velocity: "{}_w".into(),
-                declared: vec!["Real {}_w \"velocity that the level follows\";".into()],
-                initial: vec!["{}_w = v;".into()],
-                equations: vec!["{tau_L}*der({}_w) = v - {}_w;".into()],
+                declared: vec!["Real {}_w \"speed that the level follows\";".into()],
+                initial: vec!["{}_w = abs(v);".into()],
+                equations: vec!["{tau_L}*der({}_w) = abs(v) - {}_w;".into()],
                 ..Self::default()
             },
             "reversal-decay" => reversal(),

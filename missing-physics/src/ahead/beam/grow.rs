@@ -174,9 +174,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let inside =
             fitted.iter().flat_map(|(_, node)| node).any(|node| self.budget(node) < INSIDE);
         let top = starts.first().map_or(0.0, |promise| promise.gain);
-        let needed: Vec<&Promise> =
-            others.iter().copied().filter(|p| !inside || p.gain >= COMPARABLE * top).collect();
-        fitted.extend(begin(&needed));
+        if inside {
+            let needed = others.iter().copied().filter(|p| p.gain >= COMPARABLE * top);
+            fitted.extend(begin(&needed.collect::<Vec<_>>()));
+        } else {
+            let raced = self.raced(first, &screened.promises, (from.setting, least), most);
+            fitted.extend(begin(&raced.iter().collect::<Vec<_>>()));
+        }
         self.untried
             .extend(fitted.iter().filter(|(_, node)| node.is_none()).map(|(term, _)| *term));
         let mut fitted: Vec<Node> = fitted.into_iter().filter_map(|(_, node)| node).collect();
