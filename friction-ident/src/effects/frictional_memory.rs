@@ -231,8 +231,7 @@ mod tests {
             .and_then(|m| m.with("frictional-memory:lag", &[("tau_L", 0.02)]))
             .unwrap();
         let time: Vec<f64> = (0..300).map(|k| f64::from(k) * 1e-4).collect();
-        let velocity: Vec<f64> =
-            time.iter().map(|t| if *t < 0.015 { 0.1 } else { -0.1 }).collect();
+        let velocity: Vec<f64> = time.iter().map(|t| if *t < 0.015 { 0.1 } else { -0.1 }).collect();
         let position: Vec<f64> = time.iter().map(|t| 0.0015 - 0.1 * (t - 0.015).abs()).collect();
         let none = vec![0.0; 300];
         let motion = MeasuredMotion::new(&time, &position, &velocity, &none).unwrap();

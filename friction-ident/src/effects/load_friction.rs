@@ -84,6 +84,11 @@ impl Effect for LoadFriction {
         self.0 == Load::Both
     }
 
+    /// As much as of the force: an axis that needs none to slow down is one whose force comes too late.
+    fn most_of_mass(&self, parameter: &str) -> Option<f64> {
+        (parameter == CARRIED.name).then_some(SHARE.high)
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw::level(match self.0 {
             Load::Drive => "level += {mu} * fabs(drive);",

@@ -244,6 +244,11 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// Largest share of the moved mass that a parameter can be, where it is one of it.
+    fn most_of_mass(&self, _parameter: &str) -> Option<f64> {
+        None
+    }
+
     /// Whether it is only tried in the place of another form.
     fn is_only_flexible(&self) -> bool {
         false

@@ -632,6 +632,13 @@ impl ModelFamily for FrictionFamily {
         self.effect(term).is_none_or(|effect| !effect.whatever().contains(&parameter))
     }
 
+    fn limits(&self, model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {
+        let parameter = &self.terms[term].parameters[parameter];
+        let share = self.effect(term).and_then(|effect| effect.most_of_mass(&parameter.name));
+        let most = share.map_or(f64::INFINITY, |share| share * self.mass_of(model));
+        (parameter.lower, parameter.upper.min(most))
+    }
+
     fn law_of(&self, term: usize) -> Option<usize> {
         let of = self.effect(term)?.law_of()?;
         self.terms.iter().position(|term| term.name == of)

@@ -67,6 +67,19 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         return None;
     }
     let intervals = intervals::of((family, ahead), node);
+    // What every model has turns forces into motion: where it may be anything, so may all that is told in its terms.
+    let always = node.model.terms.iter().filter(|index| family.terms()[**index].always);
+    let anything = always.flat_map(|index| {
+        let term = &family.terms()[*index];
+        let needed =
+            term.parameters.iter().filter(|p| p.lower > 0.0 && family.needs(*index, &p.name));
+        needed.map(|parameter| term.key(parameter))
+    });
+    let anything =
+        anything.map(|key| (intervals[&key].clone(), key)).find(|(is, _)| !is.identifiable);
+    if let Some((Estimate { low, high, unit, .. }, parameter)) = anything {
+        return Some((*added.last()?, Refusal::Unknown { parameter, low, high, unit }));
+    }
     added.into_iter().find_map(|index| {
         let term = &family.terms()[index];
         let lost = term.parameters.iter().find(|parameter| {
@@ -94,12 +107,12 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         }
         let unit = |k: &usize| &term.parameters[*k].unit;
         let sizes = amplitudes.chunk_by(|a, b| unit(a) == unit(b)).filter_map(size_of);
-        sizes.map(|(k, is)| (&term.parameters[k], is)).find_map(|(parameter, is)| {
+        sizes.into_iter().find_map(|(k, is)| {
             // One that may be 0 is not determined by itself: an offset makes up for it.
             let known = is.low > 0.0 || is.high < 0.0;
-            let reaches = |limit: f64| known && (is.low..=is.high).contains(&limit);
-            let beyond = reaches(parameter.lower) || reaches(parameter.upper);
-            beyond.then(|| (index, Refusal::AtLimit { parameter: term.key(parameter) }))
+            let (lower, upper) = family.limits(&node.model, index, k);
+            let beyond = known && (is.low <= lower || is.high >= upper);
+            beyond.then(|| (index, Refusal::AtLimit { parameter: term.key(&term.parameters[k]) }))
         })
     })
 }

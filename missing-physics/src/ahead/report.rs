@@ -299,28 +299,4 @@ fn finite(decision: &Decision) -> Decision {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::Outcome;
-
-    #[test]
-    fn numbers_that_are_none_do_not_reach_a_file() {
-        let decision = Decision {
-            rung: 1,
-            candidate: vec!["a".to_owned()],
-            compared_with: Vec::new(),
-            difference: f64::NAN,
-            standard_error: 1.0,
-            budget: f64::INFINITY,
-            outcome: Outcome::TooLittle,
-            because: None,
-        };
-        let told = finite(&decision);
-        assert_eq!((told.difference, told.standard_error, told.budget), (0.0, 1.0, 0.0));
-        assert_eq!(told.because, Some(Reason::NotFinite));
-        assert_eq!(share(f64::NAN, 10.0), -1.0);
-        assert_eq!(share(-1e9, 10.0), -1.0);
-        assert_eq!(share(f64::INFINITY, 10.0), 1.0);
-        assert!((share(5.0, 1000.0) - 0.00995).abs() < 1e-5);
-    }
-}
+mod tests;

@@ -93,6 +93,8 @@ pub struct Plant {
     pub forms: Vec<(usize, usize)>,
     /// Effects that every plant has.
     pub usual: Vec<usize>,
+    /// A term and the largest size of it that makes sense.
+    pub most: Option<(usize, f64)>,
     /// Terms with the usual ones that they are other laws of.
     pub laws: Vec<(usize, usize)>,
     /// A term that may be another one as well.
@@ -185,6 +187,7 @@ impl Plant {
             kin: vec![PUSH],
             forms: vec![(BENT, WAVE)],
             usual: Vec::new(),
+            most: None,
             laws: Vec::new(),
             related: None,
             leaps: Vec::new(),
@@ -328,6 +331,11 @@ impl ModelFamily for Plant {
     }
     fn needs(&self, _term: usize, _parameter: &str) -> bool {
         true
+    }
+    fn limits(&self, _model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {
+        let parameter = &self.terms[term].parameters[parameter];
+        let most = self.most.filter(|(limited, _)| *limited == term);
+        (parameter.lower, most.map_or(parameter.upper, |(_, most)| most))
     }
     fn law_of(&self, term: usize) -> Option<usize> {
         self.laws.iter().find(|(law, _)| *law == term).map(|(_, of)| *of)

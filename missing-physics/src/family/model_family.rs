@@ -155,6 +155,13 @@ pub trait ModelFamily: Sync {
         false
     }
 
+    /// The limits beyond which a parameter of a term makes no sense in a model: those of its search, unless others of the
+    /// model's parameters say less.
+    fn limits(&self, _model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {
+        let parameter = &self.terms()[term].parameters[parameter];
+        (parameter.lower, parameter.upper)
+    }
+
     /// The usual term that this one is another law of, if any: where it leaves nothing of that one it is no effect that is
     /// missing, but how that one is in this system.
     fn law_of(&self, _term: usize) -> Option<usize> {

@@ -376,7 +376,9 @@ impl<'a> Writer<'a> {
             }
             line("c->head = (c->head + 1) % LINE;");
         } else if lag {
-            line("c->desired = fabs(reference_velocity) + (c->desired - fabs(reference_velocity)) * DECAY;");
+            line(
+                "c->desired = fabs(reference_velocity) + (c->desired - fabs(reference_velocity)) * DECAY;",
+            );
             line("w = c->desired;");
             if bond {
                 line("c->measured = fabs(measured) + (c->measured - fabs(measured)) * DECAY;");

@@ -48,8 +48,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let main = self.main(promise.term);
             go_on.contains(&main) || go_on.len() < most && go_on.insert(main)
         });
-        let from_there =
-            |(promise, node): (&Promise, Node)| Promise { starts: vec![node.model], ..promise.clone() };
+        let from_there = |(promise, node): (&Promise, Node)| Promise {
+            starts: vec![node.model],
+            ..promise.clone()
+        };
         tried.into_iter().map(from_there).collect()
     }
 }

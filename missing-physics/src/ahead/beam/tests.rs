@@ -2,6 +2,7 @@ mod conclude;
 mod grow;
 mod led;
 mod other_law;
+mod race;
 mod rivals;
 mod shape;
 mod simpler;
@@ -299,6 +300,19 @@ fn an_effect_is_not_told_whose_shape_the_data_do_not_tell() {
     let parameter = "wave.size".to_owned();
     let twins: [(usize, &[f64]); 2] = [(WAVE, &[9.9]), (TWIN, &[0.05])];
     assert_eq!(large(&twins), Some((WAVE, Refusal::AtLimit { parameter })));
+    // More than makes sense in this model, though less than was searched.
+    let of_most = |most: f64| {
+        let mut plant = Plant::new(6, &[(WAVE, &[0.05])]);
+        plant.most = Some((WAVE, most));
+        let (base, node) = (node(&plant, &[]), node(&plant, &[(WAVE, &[0.05])]));
+        not_told(&plant, &plant, &base, &node).map(|(_, why)| why)
+    };
+    assert_eq!(of_most(0.06), None);
+    let parameter = "wave.size".to_owned();
+    for most in [0.0501, 0.04] {
+        let parameter = parameter.clone();
+        assert_eq!(of_most(most), Some(Refusal::AtLimit { parameter }), "{most}");
+    }
     // What the base has is not asked.
     let small = node(&plant, &[(TONE, &[1e-5, 5.0])]);
     assert_eq!(not_told(&plant, &plant, &small, &small), None);
