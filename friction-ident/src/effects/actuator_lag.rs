@@ -71,6 +71,10 @@ impl Effect for ActuatorLag {
         })
     }
 
+    fn lateness(&self, values: &[f64]) -> Option<f64> {
+        values.first().copied()
+    }
+
     fn flexible_form(&self) -> Option<&'static str> {
         Some("actuator-lag:second-order")
     }
@@ -103,6 +107,11 @@ const SECOND_ORDER_IN_C: &str = include_str!("../export/c/second_order.c");
 impl Effect for SecondOrder {
     fn about(&self) -> &'static About {
         &SECOND_ORDER_ABOUT
+    }
+
+    fn lateness(&self, values: &[f64]) -> Option<f64> {
+        let [tau, zeta] = values else { return None };
+        Some(2.0 * zeta * tau)
     }
 
     fn whatever(&self) -> &'static [&'static str] {

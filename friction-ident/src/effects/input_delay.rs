@@ -46,6 +46,10 @@ impl Effect for InputDelay {
         })
     }
 
+    fn lateness(&self, values: &[f64]) -> Option<f64> {
+        values.first().copied()
+    }
+
     fn drive(&self) -> Option<&dyn Drive> {
         Some(self)
     }

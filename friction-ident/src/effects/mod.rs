@@ -244,6 +244,11 @@ pub trait Effect: Sync + Send {
         None
     }
 
+    /// How much later the force of the drive comes than its command, s, where it is an effect that makes it late.
+    fn lateness(&self, _values: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// Largest share of the moved mass that a parameter can be, where it is one of it.
     fn most_of_mass(&self, _parameter: &str) -> Option<f64> {
         None

@@ -241,7 +241,9 @@ impl Ahead for View<'_> {
     }
 
     fn relatives(&self, model: &Fitted) -> Vec<Fitted> {
-        self.family.related_second_bodies(model)
+        let mut related = self.family.related_second_bodies(model);
+        related.extend(self.family.other_forms_of_companion(model));
+        related
     }
 
     fn rivals(&self) -> Vec<Rival> {
@@ -250,6 +252,10 @@ impl Ahead for View<'_> {
 
     fn vanishes(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
         self.family.vanishes(model, base)
+    }
+
+    fn of_reading(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
+        self.family.within_a_sample(model, base)
     }
 
     fn starts(&self, term: usize) -> usize {

@@ -1,6 +1,7 @@
 //! Forms of effects one sample ahead: which one is more flexible, and where it begins.
 
-use missing_physics::Fitted;
+
+use missing_physics::{Fitted, ModelFamily};
 use missing_physics::family::Trial;
 use missing_physics::report::{NamedValue, Refusal};
 
@@ -193,6 +194,33 @@ impl FrictionFamily {
         vec![model.without(self, term).with(to, &values)]
     }
 
+    /// The same with what the last term acts on in its other forms, where it acts on another one: which form it has was seen
+    /// without this term.
+    pub(super) fn other_forms_of_companion(&self, model: &Fitted) -> Vec<Fitted> {
+        let others = || {
+            let main_of = |term: usize| self.form_of(term).unwrap_or(term);
+            let acts_on = self.effect(main_of(*model.terms.last()?))?.companion()?;
+            let main = self.terms.iter().position(|term| term.name == acts_on)?;
+            let of_main = |term: usize| main_of(term) == main;
+            let place = model.terms.iter().position(|term| of_main(*term) && self.is_candidate(*term))?;
+            let (now, old) = (model.terms[place], &model.values[model.range(self, place)]);
+            let value = |name: &str| {
+                let k = self.terms[now].parameters.iter().position(|p| p.name == name)?;
+                Some(old[k])
+            };
+            let forms = (1..self.terms.len())
+                .filter(|term| of_main(*term) && *term != now && self.is_candidate(*term));
+            let with = |term: usize| {
+                let parameters = self.terms[term].parameters.iter();
+                let values: Vec<f64> =
+                    parameters.map(|p| value(&p.name).unwrap_or(p.start)).collect();
+                model.without(self, now).with(term, &values)
+            };
+            Some(forms.map(with).collect::<Vec<Fitted>>())
+        };
+        others().unwrap_or_default()
+    }
+
     /// The last term of a model, if it is a second body.
     fn last_second_body(&self, model: &Fitted) -> Option<(usize, &'static SecondBody)> {
         let &term = model.terms.last().filter(|term| self.is_second_body(**term))?;
@@ -245,7 +273,7 @@ impl FrictionFamily {
 
     /// Values of a term with those that are known from elsewhere, in the order of its effect's table, and the limits of
     /// their search below and above.
-    fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> Vec<[f64; 3]> {
+    pub(super) fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> Vec<[f64; 3]> {
         let parameters = &self.terms[term].parameters;
         let table = effect.about().parameters.iter().filter(|p| !super::limits::is_fixed(p));
         let free = |name: &str| parameters.iter().position(|free| free.name == name);

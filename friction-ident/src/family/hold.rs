@@ -5,8 +5,8 @@
 
 use missing_physics::ahead::fit::Fitter;
 use missing_physics::ahead::statistics;
-use missing_physics::report::Remark;
-use missing_physics::{Hold, ModelFamily, Recording, fit, terms};
+use missing_physics::report::{NamedValue, Refusal, Remark};
+use missing_physics::{Fitted, Hold, ModelFamily, Recording, fit, terms};
 
 use super::ahead::View;
 use super::{FrictionFamily, Options, PreparationError};
@@ -41,15 +41,14 @@ pub(super) fn decided(
     let (Some(a), Some(b)) = (a, b) else { return Ok(sampled) };
     let nats = (a - b).abs();
     let by_search = nats < CLEAR * recording.len() as f64;
-    let chosen = |hold: Hold, family: FrictionFamily| FrictionFamily {
-        hold: Some(HoldChoice { hold, nats, by_search }),
-        ..family
+    let chosen = |family: FrictionFamily, by_search: bool| {
+        let hold = Some(HoldChoice { hold: family.recording.hold(), nats, by_search });
+        FrictionFamily { hold, ..family }
     };
-    let (sampled, held) = (chosen(Hold::Sampled, sampled), chosen(Hold::ZeroOrder, held));
     let (family, other) = if b > a { (held, sampled) } else { (sampled, held) };
-    // Where the simplest model hardly tells the search itself has to.
-    let other_hold = by_search.then(|| Box::new(other));
-    Ok(FrictionFamily { other_hold, ..family })
+    // Where the simplest model hardly tells the search itself has to, and only a search comes to the other one.
+    let other_hold = Some(Box::new(chosen(other, true)));
+    Ok(FrictionFamily { other_hold, ..chosen(family, by_search) })
 }
 
 impl HoldChoice {
@@ -57,6 +56,33 @@ impl HoldChoice {
     pub(super) fn remark(self, input: String) -> Remark {
         let Self { hold, nats, by_search } = self;
         Remark::Read { input, hold, nats, by_search }
+    }
+}
+
+impl FrictionFamily {
+    /// An effect beyond those of a base model that makes the force of the drive late by less than half a sample, where
+    /// nobody stated what the force does between samples: that of a controller which is faster than its recording, or which
+    /// holds its command for some of the time, comes as late.
+    pub(super) fn within_a_sample(
+        &self,
+        model: &Fitted,
+        base: &Fitted,
+    ) -> Option<(usize, Refusal)> {
+        self.hold.filter(|choice| choice.hold == Hold::Sampled)?;
+        let limit = 0.5 * self.prepared.interval;
+        let mut added = model.terms.iter().enumerate().filter(|(_, t)| !base.terms.contains(t));
+        added.find_map(|(place, &term)| {
+            let effect = self.effect(term)?;
+            let full = self.in_full(effect, term, &model.values[model.range(self, place)]);
+            let late = effect.lateness(&full.iter().map(|of| of[0]).collect::<Vec<f64>>())?;
+            let refusal = Refusal::NotThatEffect {
+                effect: effect.about().name.to_owned(),
+                value: NamedValue { name: "lateness".to_owned(), value: late, unit: "s".to_owned() },
+                limit,
+                meaning: "what the force does between two samples comes as late".to_owned(),
+            };
+            (late < limit).then_some((term, refusal))
+        })
     }
 }
 

@@ -34,7 +34,7 @@ mod views;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use missing_physics::family::{Ahead, FullRate, Generic, sizes};
+use missing_physics::family::{Ahead, FullRate, Generic, OtherReading, sizes};
 use missing_physics::report::{Course, NamedError, Plot, Remark};
 use missing_physics::statistics::basis::{dot, gram, solve};
 use missing_physics::statistics::split::Split;
@@ -597,8 +597,9 @@ impl ModelFamily for FrictionFamily {
         Some(Box::new(ahead::View::new(self, ahead)))
     }
 
-    fn other_reading(&self) -> Option<(&Self, f64)> {
-        Some((self.other_hold.as_deref()?, self.hold?.nats))
+    fn other_reading(&self) -> Option<OtherReading<'_, Self>> {
+        let HoldChoice { nats, by_search, .. } = self.hold?;
+        Some(OtherReading { family: self.other_hold.as_deref()?, nats, decided: !by_search })
     }
 
     fn reading(&self) -> Vec<Remark> {

@@ -36,7 +36,8 @@ impl FrictionFamily {
 
     /// The family of all of a recording, read as this one of a part of it.
     fn extended(mut self, all: &Recording, options: &Options) -> Result<Self, PreparationError> {
-        let other = self.other_hold.take();
+        // To prepare all of it twice takes long: where the pieces tell, that stands.
+        let other = self.other_hold.take().filter(|_| self.hold.is_some_and(|hold| hold.by_search));
         let other = other.map(|other| other.extended(all, options)).transpose()?;
         let whole = Self::as_recorded(&all.clone().with_hold(self.recording.hold()), options)?;
         let (hold, other_hold) = (self.hold, other.map(Box::new));
@@ -47,6 +48,7 @@ impl FrictionFamily {
 
 #[cfg(test)]
 mod tests {
+    use missing_physics::family::OtherReading;
     use missing_physics::report::Remark;
     use missing_physics::{Channel, ModelFamily};
 
@@ -83,7 +85,7 @@ mod tests {
         assert_eq!(part.stroke, family.stroke);
         let hold = family.hold().unwrap().hold;
         assert_eq!((family.recording.hold(), part.recording.hold()), (hold, hold));
-        if let Some((other, _)) = family.other_reading() {
+        if let Some(OtherReading { family: other, .. }) = family.other_reading() {
             assert_ne!(other.recording.hold(), hold);
             assert_eq!(other.recording.len(), all.len());
         }

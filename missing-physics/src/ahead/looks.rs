@@ -14,7 +14,7 @@ use super::refused::refused;
 use super::report::Report;
 use super::residuals::Residuals;
 use super::{Ahead, reading};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::{Fitted, ModelFamily, OtherReading};
 use crate::fit;
 use crate::report::{Decision, Discovery, Remark};
 use crate::task::{Event, Observer, Settings, Thresholds};
@@ -43,11 +43,13 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let thresholds = Thresholds { most, ..thresholds };
     let run = Run { settings, sets, thresholds, started, stop: &stop, tell: &tell };
     let there = here.family.other_reading().filter(|_| !stop());
-    let there = there.and_then(|(other, nats)| Some((Reading::of(other)?, nats)));
+    let there = there.and_then(|OtherReading { family, nats, decided }| {
+        Some(Other { reading: Reading::of(family)?, nats, decided })
+    });
     let coloured = here.coloured();
     let coloured = coloured.as_ref().map(|here| {
-        let there = there.as_ref().and_then(|(there, nats)| Some((there.coloured()?, *nats)));
-        (here, there)
+        let there = there.as_ref();
+        (here, there.and_then(|there| Some(Other { reading: there.reading.coloured()?, ..*there })))
     });
     let asked = thresholds.in_part(here.whole.asked());
     let look = |most: usize| {
@@ -133,6 +135,14 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     }
 }
 
+/// The other way to read a recording.
+struct Other<'a, F: ModelFamily + ?Sized> {
+    reading: Reading<'a, F>,
+    /// By how many nats the simplest model prefers the first, and whether that decides until effects say otherwise.
+    nats: f64,
+    decided: bool,
+}
+
 /// A search in one reading that has looked at sets of one effect.
 struct Pursuit<'a, F: ModelFamily + ?Sized> {
     reading: &'a Reading<'a, F>,
@@ -143,6 +153,15 @@ struct Pursuit<'a, F: ModelFamily + ?Sized> {
 impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
     fn is_complete(&self) -> bool {
         self.search.is_complete(self.climb.top().0)
+    }
+
+    /// Whether the best model with an effect, which leaves more than the sensors make, predicts better in another reading.
+    fn is_better_in(&self, other: &Reading<'_, F>) -> bool {
+        let (top, effects) = self.climb.top();
+        effects > 0 && !self.is_complete() && {
+            let fitter = Fitter::new(other.family, other.searched());
+            reading::is_better(top, &fitter)
+        }
     }
 }
 
@@ -320,12 +339,22 @@ impl<'a> Run<'a> {
     fn begun<F: ModelFamily + ?Sized>(
         &self,
         here: &'a Reading<'a, F>,
-        there: Option<&'a (Reading<'a, F>, f64)>,
+        there: Option<&'a Other<'a, F>>,
     ) -> Begun<'a, F> {
-        let (first, second) = rayon::join(
-            || self.pursuit(here, Search::base),
-            || there.map(|(there, nats)| (self.pursuit(there, Search::base_in_time), *nats)),
-        );
+        let first = || self.pursuit(here, Search::base);
+        let second = |there: &'a Other<'a, F>| self.pursuit(&there.reading, Search::base_in_time);
+        let (first, second) = match there {
+            Some(there) if !there.decided => {
+                let (first, second) = rayon::join(first, || second(there));
+                (first, Some((second, there.nats)))
+            }
+            // What a model lacks may decide for the wrong one: beside what it lacked most it is asked once more.
+            _ => {
+                let first = first();
+                let asked = there.filter(|there| first.is_better_in(&there.reading));
+                (first, asked.map(|there| (second(there), 0.0)))
+            }
+        };
         Begun {
             here: first,
             there: second,

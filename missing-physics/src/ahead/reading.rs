@@ -43,6 +43,11 @@ pub fn with_less<F: ModelFamily + ?Sized>(
     best.filter(|(gain, _)| *gain < better).map(|(_, without)| without)
 }
 
+/// Whether a model predicts better in the other reading, whose `fitter` this is.
+pub fn is_better<F: ModelFamily + ?Sized>(model: &Node, fitter: &Fitter<'_, F>) -> bool {
+    gain(model, &fitter.refit(model.model.clone(), model.setting, STEPS)) > 0.0
+}
+
 /// Gain in log-likelihood from one model to another, each with errors of its own size.
 fn gain(from: &Node, to: &Node) -> f64 {
     to.errors.len() as f64 / to.correlation() * (from.deviation / to.deviation).ln()

@@ -42,15 +42,16 @@ pub fn refused<F: ModelFamily + ?Sized>(
     ahead.vanishes(&node.model, &base.model)
 }
 
-/// The effect of a model that is not told, and why, if any: it is none as it was fitted, or the data do not tell what makes
-/// it one.
+/// The effect of a model that is not told, and why, if any: it is none as it was fitted, stands for how the recording is
+/// read, or the data do not tell what makes it one.
 pub fn not_told<F: ModelFamily + ?Sized>(
     family: &F,
     ahead: &dyn Ahead,
     base: &Node,
     node: &Node,
 ) -> Option<(usize, Refusal)> {
-    refused(family, ahead, base, node).or_else(|| unknown(family, ahead, base, node))
+    let as_read = || ahead.of_reading(&node.model, &base.model);
+    refused(family, ahead, base, node).or_else(as_read).or_else(|| unknown(family, ahead, base, node))
 }
 
 /// The effect of a model of which the data do not tell what makes it that effect, if any: a length, a speed or a time that

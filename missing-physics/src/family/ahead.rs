@@ -96,6 +96,11 @@ pub trait Ahead: Sync {
         None
     }
 
+    /// A term that a model has beyond `base` and that does no more than another way to read the recording would, and why.
+    fn of_reading(&self, _model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
+        None
+    }
+
     /// From how many of a term's trials it is fitted, the best ones first.
     fn starts(&self, _term: usize) -> usize {
         1

@@ -11,6 +11,7 @@ use super::coordinate::{ComparedQuantity, Coordinate, Regime};
 use super::fitted::Fitted;
 use super::full_rate::FullRate;
 use super::generic::Generic;
+use super::other_reading::OtherReading;
 use super::shapes;
 use super::sizes::sizes;
 use super::term::Term;
@@ -119,10 +120,8 @@ pub trait ModelFamily: Sync {
         None
     }
 
-    /// The same recording read in the other way that its data hardly tell from this one (an input held between samples
-    /// or sampled), and by how many nats the simplest model prefers this one; nothing where the data do tell, or where it
-    /// was stated.
-    fn other_reading(&self) -> Option<(&Self, f64)> {
+    /// The same recording read in the other way (an input held between samples or sampled); nothing where it was stated.
+    fn other_reading(&self) -> Option<OtherReading<'_, Self>> {
         None
     }
 

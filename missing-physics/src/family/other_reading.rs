@@ -1,0 +1,12 @@
+//! The other way to read a recording.
+
+/// A recording read in another way than the one that its simplest model prefers.
+#[derive(Clone, Copy, Debug)]
+pub struct OtherReading<'a, F: ?Sized> {
+    /// The family of that reading.
+    pub family: &'a F,
+    /// By how many nats the simplest model prefers the first one.
+    pub nats: f64,
+    /// Whether that is so much that only a model with effects may say otherwise.
+    pub decided: bool,
+}
