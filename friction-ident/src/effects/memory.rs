@@ -2,6 +2,9 @@
 
 use super::{Motion, Parameters, Past};
 
+/// What a memory that asks of the past only for the begin of the step must know, s.
+pub const BEGIN_OF_STEP: f64 = 1e-9;
+
 /// Shapes what the friction level sees, from a state of its own.
 pub trait Memory: Sync + Send {
     /// State variables per lane.

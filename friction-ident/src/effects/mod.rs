@@ -329,7 +329,7 @@ pub static ALL: &[&dyn Effect] = &[
     &quadratic_drag::QuadraticDrag,
     &load_friction::LOAD_FRICTION,
     &drift::Drift,
-    &shear_thinning::ShearThinning,
+    &shear_thinning::SHEAR_THINNING,
     &viscous_stroke::ViscousStroke,
     &actuator_lag::ActuatorLag,
     &input_delay::InputDelay,

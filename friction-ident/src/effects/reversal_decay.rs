@@ -1,6 +1,9 @@
 //! Friction after a reversal that is not yet, or no longer, what it is further on: balls that must reseat, wipers that fold
 //! over, grease that was pushed aside.
 
+mod hysteresis;
+
+use super::memory::BEGIN_OF_STEP;
 use super::ripple::LEADS;
 use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
 use crate::axis::Quantity;
@@ -14,8 +17,7 @@ pub struct ReversalDecay;
 
 /// So far from the last reversal that nothing of it is left.
 const FAR: f64 = f64::MAX;
-/// The velocity at the begin of the step is all that is asked of the past, s.
-const BACK: f64 = 1e-9;
+static FORMS: [&dyn Effect; 1] = [&hysteresis::Hysteresis];
 
 static ABOUT: About = About {
     name: "reversal-decay",
@@ -61,6 +63,10 @@ impl Effect for ReversalDecay {
         (parameter == "l").then_some(&LEADS)
     }
 
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
     fn memory(&self) -> Option<&dyn Memory> {
         Some(self)
     }
@@ -77,7 +83,7 @@ impl Memory for ReversalDecay {
     }
 
     fn memory(&self, _p: Parameters<'_>) -> f64 {
-        BACK
+        BEGIN_OF_STEP
     }
 
     fn recall(
@@ -102,6 +108,14 @@ impl Memory for ReversalDecay {
                 distance[i] = if turned { moved.abs() } else { distance[i] + moved.abs() };
                 direction[i] = moved.signum();
             }
+        }
+    }
+
+    /// The way since the reversal is as long as the estimate says, either way: noise is no reversal.
+    fn correct(&self, _p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
+        let (distance, direction) = state.split_at_mut(displacement.len());
+        for (i, dx) in displacement.iter().enumerate() {
+            distance[i] = (distance[i] + direction[i] * dx).max(0.0);
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Forms of effects one sample ahead: which one is more flexible, and where it begins.
 
-
-use missing_physics::{Fitted, ModelFamily};
 use missing_physics::family::Trial;
 use missing_physics::report::{NamedValue, Refusal};
+use missing_physics::{Fitted, ModelFamily};
 
 use super::FrictionFamily;
 use crate::effects::{Along, AsFound, Before, Effect, Refused, SecondBody};
@@ -202,7 +201,8 @@ impl FrictionFamily {
             let acts_on = self.effect(main_of(*model.terms.last()?))?.companion()?;
             let main = self.terms.iter().position(|term| term.name == acts_on)?;
             let of_main = |term: usize| main_of(term) == main;
-            let place = model.terms.iter().position(|term| of_main(*term) && self.is_candidate(*term))?;
+            let place =
+                model.terms.iter().position(|term| of_main(*term) && self.is_candidate(*term))?;
             let (now, old) = (model.terms[place], &model.values[model.range(self, place)]);
             let value = |name: &str| {
                 let k = self.terms[now].parameters.iter().position(|p| p.name == name)?;
@@ -273,7 +273,12 @@ impl FrictionFamily {
 
     /// Values of a term with those that are known from elsewhere, in the order of its effect's table, and the limits of
     /// their search below and above.
-    pub(super) fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> Vec<[f64; 3]> {
+    pub(super) fn in_full(
+        &self,
+        effect: &dyn Effect,
+        term: usize,
+        fitted: &[f64],
+    ) -> Vec<[f64; 3]> {
         let parameters = &self.terms[term].parameters;
         let table = effect.about().parameters.iter().filter(|p| !super::limits::is_fixed(p));
         let free = |name: &str| parameters.iter().position(|free| free.name == name);

@@ -77,7 +77,11 @@ impl FrictionFamily {
             let late = effect.lateness(&full.iter().map(|of| of[0]).collect::<Vec<f64>>())?;
             let refusal = Refusal::NotThatEffect {
                 effect: effect.about().name.to_owned(),
-                value: NamedValue { name: "lateness".to_owned(), value: late, unit: "s".to_owned() },
+                value: NamedValue {
+                    name: "lateness".to_owned(),
+                    value: late,
+                    unit: "s".to_owned(),
+                },
                 limit,
                 meaning: "what the force does between two samples comes as late".to_owned(),
             };

@@ -51,7 +51,9 @@ pub fn not_told<F: ModelFamily + ?Sized>(
     node: &Node,
 ) -> Option<(usize, Refusal)> {
     let as_read = || ahead.of_reading(&node.model, &base.model);
-    refused(family, ahead, base, node).or_else(as_read).or_else(|| unknown(family, ahead, base, node))
+    refused(family, ahead, base, node)
+        .or_else(as_read)
+        .or_else(|| unknown(family, ahead, base, node))
 }
 
 /// The effect of a model of which the data do not tell what makes it that effect, if any: a length, a speed or a time that

@@ -2,6 +2,7 @@
 
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
+use crate::effects::memory::BEGIN_OF_STEP;
 use crate::effects::{
     About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
@@ -14,8 +15,6 @@ pub struct Ageing;
 
 /// Age of contacts that start at rest, s.
 const RESTED: f64 = 1.0;
-/// The velocity at the begin of the step is all that is asked of the past, s.
-const BACK: f64 = 1e-9;
 
 static ABOUT: About = About {
     name: "rising-static-friction:ageing",
@@ -87,7 +86,7 @@ impl Memory for Ageing {
     }
 
     fn memory(&self, _p: Parameters<'_>) -> f64 {
-        BACK
+        BEGIN_OF_STEP
     }
 
     fn recall(

@@ -132,6 +132,7 @@ impl Part {
             "gravity-pendulum" => smooth("{M}*sin(x - {q_0})"),
             "quadratic-drag" => smooth("{c}*v*abs(v)"),
             "shear-thinning" => smooth("{dF}*tanh(v/{v_n})"),
+            "shear-thinning:cross" => smooth("{dF}*v/({v_n} + abs(v))"),
             "asymmetry" => Self { smooth: "{dF_v}*abs(v)".into(), ..level("{dF_C}*@s") },
             "drift" => Self {
                 smooth: "{dF_v}*exp(-time/{tau})*v".into(),
@@ -182,6 +183,14 @@ impl Part {
                 ..Self::default()
             },
             "reversal-decay" => reversal(),
+            "reversal-decay:hysteresis" => Self {
+                level: "{F_h}*@s*{}_h".into(),
+                reads_sliding: true,
+                declared: vec!["Real {}_h \"share of the force, -1..1\";".into()],
+                initial: vec!["{}_h = sign(v);".into()],
+                equations: vec!["der({}_h) = if slides then (v - {}_h*abs(v))/{l} else 0;".into()],
+                ..Self::default()
+            },
             "backlash" => gap_without_load(),
             "motor-gain" => drive("{g}*@in"),
             "saturation" => drive("max(-{u_max}, min({u_max}, @in))"),

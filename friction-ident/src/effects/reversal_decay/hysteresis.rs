@@ -1,0 +1,188 @@
+//! Hysteresis: cables in a chain, seals and wipers that bend before they slide.
+
+use crate::axis::Quantity;
+use crate::effects::c_dynamics::PAST;
+use crate::effects::memory::BEGIN_OF_STEP;
+use crate::effects::{
+    About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+};
+use crate::simd::{exp, sign, vectorised};
+
+/// `level += F_h h s` with `l dh = (s - h) |dx|`: a force beside the friction of the axis that turns around over a distance
+/// after every reversal, from wherever it had come to (after a long way `F_h - 2 F_h exp(-d/l)`: a reversal decay).
+#[derive(Clone, Copy, Debug)]
+pub struct Hysteresis;
+
+static ABOUT: About = About {
+    name: "reversal-decay:hysteresis",
+    title: "hysteresis of cables and seals",
+    equation: "F_h h s, l dh = (s - h) |dx|",
+    parameters: &[
+        Parameter::level(
+            "F_h",
+            "force after a long way in one direction",
+            Quantity::Force,
+            100.0,
+            1.0,
+        ),
+        Parameter::shape(
+            "l",
+            "distance over which it turns around",
+            Quantity::Length,
+            (1e-6, 0.1),
+            1e-3,
+        ),
+    ],
+    slots: &[Slot::Memory],
+    shows: "(residual x sign of velocity) against the distance since the last reversal, the same at every speed; less of it \
+            where the way before was short",
+    reference: "P. R. Dahl, Aerospace Corp. TOR-0158, 1968 (here beside a friction that sticks)",
+};
+
+impl Effect for Hysteresis {
+    fn about(&self) -> &'static About {
+        &ABOUT
+    }
+
+    fn c_dynamics(&self) -> Option<CDynamics> {
+        Some(CDynamics {
+            states: 1,
+            helpers: &[PAST],
+            slow: "1e-9",
+            start: "{s0} = sign(velocity);",
+            recall: "{
+    const double ahead = fmax(m->when - m->slow.time[m->slow.end - 1], 0.0) * fabs(m->predicted);
+    const double to = sign(m->predicted == 0.0 ? m->drive : m->predicted);
+    m->remembered += {F_h} * to * (to + ({s0} - to) * exp(-ahead / {l}));
+}",
+            remember: "if (m->sliding > 0.0 && m->displacement != 0.0) {
+    const double to = sign(m->displacement);
+    {s0} = to + ({s0} - to) * exp(-fabs(m->displacement) / {l});
+}",
+            ..CDynamics::NONE
+        })
+    }
+
+    fn memory(&self) -> Option<&dyn Memory> {
+        Some(self)
+    }
+}
+
+/// States: the share of the force, -1..1, and the direction of the last slide (0 before the first motion).
+impl Memory for Hysteresis {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
+        state.fill(sign(velocity));
+    }
+
+    fn memory(&self, _p: Parameters<'_>) -> f64 {
+        BEGIN_OF_STEP
+    }
+
+    fn recall(
+        &self,
+        p: Parameters<'_>,
+        m: &Motion<'_>,
+        past: &Past,
+        state: &[f64],
+        out: &mut Recalled<'_>,
+    ) {
+        let (begin, share) = (past.newest_times(), &state[..out.level.len()]);
+        recall(p, begin, m.time, m.velocity, m.drive_force, share, out.level);
+    }
+
+    fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
+        let (share, direction) = state.split_at_mut(taken.sliding.len());
+        for (i, moved) in taken.displacement.iter().enumerate() {
+            // What an axis at rest seems to move is noise, or the vibration of its contact.
+            if taken.sliding[i] > 0.0 && *moved != 0.0 {
+                let to = moved.signum();
+                share[i] = to + (share[i] - to) * (-moved.abs() / p.get(1)[i]).exp();
+                direction[i] = to;
+            }
+        }
+    }
+
+    /// Along the branch that it is on, either way: noise is no reversal.
+    fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
+        let (share, direction) = state.split_at_mut(displacement.len());
+        for (i, dx) in displacement.iter().enumerate() {
+            let slope = direction[i].abs() - share[i] * direction[i];
+            share[i] = (share[i] + slope * dx / p.get(1)[i]).clamp(-1.0, 1.0);
+        }
+    }
+}
+
+vectorised! {
+    fn recall(
+        p: Parameters<'_>,
+        begin: &[f64],
+        now: &[f64],
+        velocity: &[f64],
+        drive_force: &[f64],
+        share: &[f64],
+        level: &mut [f64],
+    ) {
+        let n = level.len();
+        let (size, length, begin, now) = (&p.get(0)[..n], &p.get(1)[..n], &begin[..n], &now[..n]);
+        let (velocity, drive_force, share) = (&velocity[..n], &drive_force[..n], &share[..n]);
+        for i in 0..n {
+            // From the begin of the step to where the level is asked for.
+            let ahead = (now[i] - begin[i]).max(0.0) * velocity[i].abs();
+            // At rest the drive says where it will go.
+            let to = sign(if velocity[i] == 0.0 { drive_force[i] } else { velocity[i] });
+            level[i] += size[i] * to * (to + (share[i] - to) * exp(-ahead / length[i]));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::axis::Axis;
+    use crate::driven::{MeasuredMotion, force_along};
+    use crate::effects::testing::along_and_simulated;
+    use crate::model::Model;
+
+    const VALUES: [(&str, f64); 2] = [("F_h", 3.0), ("l", 0.01)];
+
+    #[test]
+    fn it_turns_around_from_wherever_it_had_come_to() {
+        let model = Model::new(Axis::Linear, 1.0)
+            .and_then(|m| m.with("coulomb", &[("F_C", 5.0)]))
+            .and_then(|m| m.with("reversal-decay:hysteresis", &VALUES))
+            .unwrap();
+        // At 0.1 m/s: a long way forwards, 4 mm back, forwards again.
+        let time: Vec<f64> = (0..1500).map(|k| f64::from(k) * 1e-3).collect();
+        let forwards = |k: usize| !(1000..1040).contains(&k);
+        let velocity: Vec<f64> =
+            (0..time.len()).map(|k| if forwards(k) { 0.1 } else { -0.1 }).collect();
+        let (mut x, mut position) = (0.0, Vec::new());
+        for v in &velocity {
+            x += v * 1e-3;
+            position.push(x);
+        }
+        let none = vec![0.0; time.len()];
+        let motion = MeasuredMotion::new(&time, &position, &velocity, &none).unwrap();
+        let force = force_along(&model, &motion);
+        assert!((force[999] - 8.0).abs() < 1e-3, "{}", force[999]);
+        let back = |d: f64| -1.0 + 2.0 * (-d / 0.01).exp();
+        let turned = back(0.004);
+        for (k, share, friction) in [
+            (1001, back(2e-4), -5.0),
+            (1038, back(3.9e-3), -5.0),
+            (1059, 1.0 + (turned - 1.0) * (-2e-3_f64 / 0.01).exp(), 5.0),
+        ] {
+            let exact = friction + 3.0 * share;
+            assert!((force[k] - exact).abs() < 0.05, "{k}: {} {exact}", force[k]);
+        }
+    }
+
+    #[test]
+    fn the_force_along_a_simulated_motion_is_the_one_that_made_it() {
+        let left = along_and_simulated(&[("reversal-decay:hysteresis", &VALUES)], None);
+        assert!(left < 0.01, "{left}");
+    }
+}
