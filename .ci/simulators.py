@@ -174,6 +174,7 @@ IN_MODELICA = (
     {"rising-static-friction": {"dF": 2.0, "gamma": 0.1, "v_s": 1e-2}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "rising-static-friction:bond": {"gamma": 0.1}},
     {"rising-static-friction:ageing": {"B": 0.5, "D_c": 1e-4, "v_c": 1e-2}},
+    {"spring:stiffening": {"k": 50.0, "F_2": 1.0, "F_3": 2.0, "start": -0.05, "end": 0.4}},
     {"reversal-decay": {"F_r": 1.2, "l": 1e-2}},
     {"reversal-decay:hysteresis": {"F_h": 1.2, "l": 1e-2}},
     {"backlash": {"F_L": 1.5, "b": 1e-3}},

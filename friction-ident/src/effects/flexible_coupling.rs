@@ -39,15 +39,25 @@ const AT: f64 = 1.001;
 /// Why a coupling is none. A force drives the mass, nothing blocks it: what rings are both bodies against each other, damped
 /// by `zeta sqrt(1 + m_L/m)`.
 fn not_one(found: &AsFound<'_>) -> Option<Refused> {
-    let (load, zeta) = (found.values[0], found.values[2]);
-    let limit = SILENT / (1.0 + load / found.mass).sqrt();
-    let silent =
+    let zeta = found.values[2];
+    let limit = silent(found.values, found.mass);
+    let quiet =
         Refused { name: "zeta", value: zeta, limit, unit_of: "zeta", meaning: "nothing rings" };
     let slow = found.at_least((1, "f"), AT, "it swings as slowly as it may");
     let (f, most) = (found.values[1], found.most[1]);
     let meaning = "it swings as fast as it may";
     let fast = Refused { name: "f", value: f, limit: most, unit_of: "f", meaning };
-    slow.or_else(|| (AT * f >= most).then_some(fast)).or_else(|| (zeta >= limit).then_some(silent))
+    slow.or_else(|| (AT * f >= most).then_some(fast)).or_else(|| (zeta >= limit).then_some(quiet))
+}
+
+/// Damping ratio from which on nothing rings.
+fn silent(values: &[f64], mass: f64) -> f64 {
+    SILENT / (1.0 + values[0] / mass).sqrt()
+}
+
+/// The data must tell that it rings.
+fn most(parameter: &str, values: &[f64], mass: f64) -> Option<f64> {
+    (parameter == ZETA.name).then(|| silent(values, mass))
 }
 
 static FORMS: [&dyn Effect; 2] = [&friction::FRICTION, &friction::ON_LOAD];
@@ -71,6 +81,10 @@ impl Effect for FlexibleCoupling {
 
     fn whatever(&self) -> &'static [&'static str] {
         &["zeta"]
+    }
+
+    fn most(&self, parameter: &str, values: &[f64], mass: f64) -> Option<f64> {
+        most(parameter, values, mass)
     }
 
     fn c_dynamics(&self) -> Option<CDynamics> {

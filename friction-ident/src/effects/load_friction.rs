@@ -85,8 +85,8 @@ impl Effect for LoadFriction {
     }
 
     /// As much as of the force: an axis that needs none to slow down is one whose force comes too late.
-    fn most_of_mass(&self, parameter: &str) -> Option<f64> {
-        (parameter == CARRIED.name).then_some(SHARE.high)
+    fn most(&self, parameter: &str, _values: &[f64], mass: f64) -> Option<f64> {
+        (parameter == CARRIED.name).then_some(SHARE.high * mass)
     }
 
     fn c_law(&self) -> Option<CLaw> {

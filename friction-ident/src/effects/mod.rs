@@ -249,8 +249,8 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// Largest share of the moved mass that a parameter can be, where it is one of it.
-    fn most_of_mass(&self, _parameter: &str) -> Option<f64> {
+    /// The largest value of a parameter with which it is this effect, beside these values of the others and a moved mass.
+    fn most(&self, _parameter: &str, _values: &[f64], _mass: f64) -> Option<f64> {
         None
     }
 

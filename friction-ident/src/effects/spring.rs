@@ -1,5 +1,7 @@
 //! A spring to the machine's base: cable chain, bellows, counterbalance.
 
+mod stiffening;
+
 use super::{About, Apart, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
@@ -26,9 +28,19 @@ static ABOUT: About = About {
     reference: "R. Hooke, De potentia restitutiva, 1678",
 };
 
+static FORMS: [&dyn Effect; 1] = [&stiffening::Stiffening];
+
 impl Effect for Spring {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("spring:stiffening")
     }
 
     fn is_of_place(&self) -> bool {

@@ -15,6 +15,8 @@ use super::{FrictionFamily, Options, PreparationError};
 const CLEAR: f64 = 0.2;
 /// Degrees of freedom of the errors.
 const FREEDOM: f64 = 2.0;
+/// Samples by which a force that is held comes later than one that was sampled, with what a fit may err.
+const HELD: f64 = 0.55;
 /// Steps of a fit at each process noise.
 const STEPS: usize = 5;
 
@@ -60,7 +62,7 @@ impl HoldChoice {
 }
 
 impl FrictionFamily {
-    /// An effect beyond those of a base model that makes the force of the drive late by less than half a sample, where
+    /// An effect beyond those of a base model that makes the force of the drive late by no more than half a sample, where
     /// nobody stated what the force does between samples: that of a controller which is faster than its recording, or which
     /// holds its command for some of the time, comes as late.
     pub(super) fn within_a_sample(
@@ -69,7 +71,7 @@ impl FrictionFamily {
         base: &Fitted,
     ) -> Option<(usize, Refusal)> {
         self.hold.filter(|choice| choice.hold == Hold::Sampled)?;
-        let limit = 0.5 * self.prepared.interval;
+        let limit = HELD * self.prepared.interval;
         let mut added = model.terms.iter().enumerate().filter(|(_, t)| !base.terms.contains(t));
         added.find_map(|(place, &term)| {
             let effect = self.effect(term)?;

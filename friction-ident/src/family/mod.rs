@@ -635,9 +635,14 @@ impl ModelFamily for FrictionFamily {
 
     fn limits(&self, model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {
         let parameter = &self.terms[term].parameters[parameter];
-        let share = self.effect(term).and_then(|effect| effect.most_of_mass(&parameter.name));
-        let most = share.map_or(f64::INFINITY, |share| share * self.mass_of(model));
-        (parameter.lower, parameter.upper.min(most))
+        let most = || {
+            let effect = self.effect(term)?;
+            let place = model.terms.iter().position(|t| *t == term)?;
+            let full = self.in_full(effect, term, &model.values[model.range(self, place)]);
+            let values: Vec<f64> = full.iter().map(|of| of[0]).collect();
+            effect.most(&parameter.name, &values, self.mass_of(model))
+        };
+        (parameter.lower, parameter.upper.min(most().unwrap_or(f64::INFINITY)))
     }
 
     fn law_of(&self, term: usize) -> Option<usize> {

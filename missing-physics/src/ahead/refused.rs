@@ -85,12 +85,17 @@ pub fn unknown<F: ModelFamily + ?Sized>(
     }
     added.into_iter().find_map(|index| {
         let term = &family.terms()[index];
-        let lost = term.parameters.iter().find(|parameter| {
+        let lost = term.parameters.iter().enumerate().find(|(k, parameter)| {
             let is = &intervals[&term.key(parameter)];
             let needed = parameter.scale == Scale::Log && family.needs(index, &parameter.name);
-            let beyond = is.low <= parameter.lower || is.high >= parameter.upper;
-            parameter.role != Role::Amplitude && needed && (beyond || !is.identifiable)
+            let (lower, upper) = family.limits(&node.model, index, *k);
+            let beyond = is.low <= lower || is.high >= upper;
+            // Where it makes no sense it is another law, however little its value matters.
+            let senseless = upper < parameter.upper && is.high >= upper;
+            let lost = needed && (beyond || !is.identifiable) || senseless;
+            parameter.role != Role::Amplitude && lost
         });
+        let lost = lost.map(|(_, parameter)| parameter);
         let unknown = |parameter: &TermParameter, is: &Estimate| {
             let (low, high, unit) = (is.low, is.high, is.unit.clone());
             (index, Refusal::Unknown { parameter: term.key(parameter), low, high, unit })

@@ -119,6 +119,10 @@ impl Effect for WithFriction {
         &["zeta"]
     }
 
+    fn most(&self, parameter: &str, values: &[f64], mass: f64) -> Option<f64> {
+        super::most(parameter, values, mass)
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(match self.encoder {
             Encoder::Mass => coupled!(""),

@@ -129,6 +129,10 @@ impl Part {
             "viscous" => smooth("{F_v}*v"),
             "offset" => smooth("{F_0}"),
             "spring" => smooth("{k}*(x - {x_0})"),
+            "spring:stiffening" => smooth(
+                "{k}*(x - ({start} + {end})/2) + {F_2}*((2*x - {start} - {end})/({end} - {start}))^2 + \
+                 {F_3}*((2*x - {start} - {end})/({end} - {start}))^3",
+            ),
             "gravity-pendulum" => smooth("{M}*sin(x - {q_0})"),
             "quadratic-drag" => smooth("{c}*v*abs(v)"),
             "shear-thinning" => smooth("{dF}*tanh(v/{v_n})"),

@@ -18,6 +18,8 @@ const PROMISED: f64 = 0.5;
 
 /// What a rival does.
 struct Does {
+    /// Whether a model with it leaves no more than the sensors make.
+    all: bool,
     /// The model without the effects that it makes up for.
     without: Node,
     /// The number of these.
@@ -51,7 +53,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             if (self.stop)() { None } else { self.rival(climb, last, (&rival, free)) }
         });
         each.max_by(|a, b| {
-            let order = (a.instead_of > 0).cmp(&(b.instead_of > 0));
+            // What leaves nothing is what there is, however many nats it takes to say so.
+            let order = (a.instead_of > 0).cmp(&(b.instead_of > 0)).then(a.all.cmp(&b.all));
             order.then(a.nats.total_cmp(&b.nats))
         })
     }
@@ -130,7 +133,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let instead_of = self.named(&gone);
         let rival = rival.title.to_owned();
         let found = Remains::Rival { rival, instead_of, nats, course };
-        Some(Does { without, instead_of: gone.len(), nats, found })
+        Some(Does { all: self.is_complete(&beside), without, instead_of: gone.len(), nats, found })
     }
 
     /// Whether a model with the rival predicts as well as the last one, or better where it makes up for one effect or
