@@ -71,6 +71,15 @@ impl Effect for ShearThinning {
         if self.0 == Law::Limit { &FORMS } else { &[] }
     }
 
+    fn flexible_form(&self) -> Option<&'static str> {
+        (self.0 == Law::Limit).then_some("shear-thinning:cross")
+    }
+
+    /// What comes there little by little sets in early, as a friction level does.
+    fn is_only_flexible(&self) -> bool {
+        self.0 == Law::Cross
+    }
+
     /// Of a friction level that sets in with the speed instead of at rest.
     fn law_of(&self) -> Option<&'static str> {
         Some("coulomb")

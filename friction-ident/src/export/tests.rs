@@ -144,6 +144,7 @@ fn with(effect: &'static dyn Effect) -> Option<Model> {
             ("backlash:two-mass", "b") => 4e-4,
             ("backlash:two-mass", "k") => 1e5,
             ("input-delay", "T_d") => 3.4e-3,
+            ("spring:stiffening", "start") => -0.3,
             (_, "q_0") => 0.2,
             _ if model.get(&address).unwrap() == 0.0 => 0.3,
             _ => continue,

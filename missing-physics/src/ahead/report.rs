@@ -171,7 +171,10 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
                     .filter(|t| !Found::is_in(added.as_slice(), *t, self.family))
                     .collect();
                 let lacks = !Found::is_in(set, *term, self.family);
-                (others.len() == 1 && lacks).then(|| others[0])
+                // Another law of a usual effect is that effect.
+                let other =
+                    others.first().filter(|other| self.family.law_of(**other) != Some(*term));
+                other.copied().filter(|_| others.len() == 1 && lacks)
             });
             let mut terms = vec![*term];
             for rival in rivals {

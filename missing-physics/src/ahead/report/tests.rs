@@ -54,7 +54,7 @@ fn the_verdict_follows_from_what_was_found_and_what_is_left() {
         } else {
             Vec::new()
         };
-        told(&plant, Found { complete, stopped, sets, ..found }).verdict
+        told(&plant, Found { sets, complete, stopped, ..found }).verdict
     };
     for complete in [false, true] {
         assert_eq!(of(false, complete, true, false), Verdict::Stopped);
@@ -155,6 +155,12 @@ fn rivals_of_one_effect_stand_together() {
         (&[PUSH, TWIN], 5.0),
     ]);
     assert_eq!(rivals, [vec!["wave", "twin"], vec!["beat", "push"]]);
+    // Another law of what was found is no rival of it.
+    let mut plant = Plant::new(1, &HIDDEN);
+    plant.laws = vec![(TWIN, WAVE)];
+    let sets = vec![(vec![WAVE, BEAT], 0.0), (vec![TWIN, BEAT], 2.0)];
+    let found = Found { sets: vec![Vec::new(), Vec::new(), sets], ..both(&plant) };
+    assert!(told(&plant, found).ambiguous.is_empty());
 }
 
 #[test]
