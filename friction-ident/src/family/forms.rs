@@ -316,12 +316,13 @@ impl FrictionFamily {
 
 #[cfg(test)]
 mod tests {
-    use missing_physics::{Channel, Recording, TermParameter};
+    use missing_physics::{Channel, Hold, Recording, TermParameter};
 
     use super::*;
     use crate::axis::Quantity;
     use crate::effects::{About, Begin, Library, Parameter};
     use crate::family::Options;
+    use crate::family::hold::HoldChoice;
 
     /// A mass of 20 kg on a sine with counts of 1 um, 20 N (rms) at 1 ms.
     fn recording() -> Recording {
@@ -339,6 +340,88 @@ mod tests {
 
     fn family() -> FrictionFamily {
         FrictionFamily::new(&recording(), &Options::default()).unwrap()
+    }
+
+    /// A model of so many terms, those with `values` in the place of where they begin.
+    fn model(family: &FrictionFamily, terms: &[&str], values: &[(&str, f64)]) -> Fitted {
+        let place = |name: &str| family.terms.iter().position(|term| term.name == name).unwrap();
+        let begin = Fitted { terms: Vec::new(), values: Vec::new() };
+        terms.iter().map(|name| place(name)).fold(begin, |model, term| {
+            let parameters = family.terms[term].parameters.iter();
+            let value = |p: &TermParameter| {
+                values.iter().find(|(name, _)| *name == p.name).map_or(p.start, |(_, value)| *value)
+            };
+            model.with(term, &parameters.map(value).collect::<Vec<f64>>())
+        })
+    }
+
+    #[test]
+    fn a_memory_is_tried_beside_the_other_forms_of_the_curve_that_it_acts_on() {
+        let family = family();
+        let values = [("dF", 3.0), ("v_s", 2e-3), ("tau_L", 0.03)];
+        let of = |terms: &[&str]| -> Vec<(Vec<String>, f64)> {
+            let others = family.other_forms_of_companion(&model(&family, terms, &values));
+            let names = |other: &Fitted| {
+                other.terms.iter().map(|term| family.terms[*term].name.clone()).collect()
+            };
+            let height =
+                |other: &Fitted| other.values[other.range(&family, other.terms.len() - 1).start];
+            others.iter().map(|other| (names(other), height(other))).collect()
+        };
+        let others = of(&["mass", "coulomb", "stribeck", "frictional-memory:lag"]);
+        let last: Vec<&str> = others.iter().map(|(names, _)| names[3].as_str()).collect();
+        assert_eq!(last, ["stribeck:gaussian", "stribeck:exponential"]);
+        assert!(others.iter().all(|(names, height)| {
+            names[..3] == ["mass", "coulomb", "frictional-memory:lag"] && *height == 3.0
+        }));
+        // What acts on nothing, and what acts on nothing that is there.
+        assert!(of(&["mass", "stribeck", "coulomb"]).is_empty());
+        assert!(of(&["mass", "coulomb", "frictional-memory"]).is_empty());
+    }
+
+    #[test]
+    fn a_lag_within_half_a_sample_is_how_an_unstated_force_acts_between_samples() {
+        let mut family = family();
+        let base = model(&family, &["mass", "coulomb"], &[]);
+        let mut refused = |hold: Option<Hold>, name: &str, values: &[(&str, f64)]| {
+            family.hold = hold.map(|hold| HoldChoice { hold, nats: 1.0, by_search: true });
+            let lagging = model(&family, &["mass", "coulomb", name], values);
+            family.within_a_sample(&lagging, &base).is_some()
+        };
+        // A sample takes 1 ms.
+        for (late, told) in [(0.2e-3, false), (0.5e-3, false), (0.6e-3, true), (3e-3, true)] {
+            let delay = |hold| refused(hold, "input-delay", &[("T_d", late)]);
+            let [sampled, held, stated] =
+                [Some(Hold::Sampled), Some(Hold::ZeroOrder), None].map(delay);
+            assert_eq!((sampled, held, stated), (!told, false, false), "{late}");
+            assert_eq!(refused(Some(Hold::Sampled), "actuator-lag", &[("tau", late)]), !told);
+            let second = [("tau", late), ("zeta", 0.5)];
+            assert_eq!(refused(Some(Hold::Sampled), "actuator-lag:second-order", &second), !told);
+        }
+        assert!(!refused(Some(Hold::Sampled), "stribeck", &[]));
+    }
+
+    #[test]
+    fn a_friction_by_the_force_of_inertia_is_less_than_the_mass_and_a_coupling_rings() {
+        let family = family();
+        let limit = |name: &str, parameter: &str, values: &[(&str, f64)]| {
+            let all = [values, &[("m", 20.0)]].concat();
+            let model = model(&family, &["mass", "coulomb", name], &all);
+            let term = *model.terms.last().unwrap();
+            let parameters = &family.terms[term].parameters;
+            let k = parameters.iter().position(|p| p.name == parameter).unwrap();
+            let mass = model.values[0];
+            (family.limits(&model, term, k).1, parameters[k].upper, mass)
+        };
+        let (most, _, mass) = limit("load-friction:both", "c", &[]);
+        assert_eq!(most, 0.9 * mass);
+        let (most, searched, _) = limit("load-friction:both", "mu", &[]);
+        assert_eq!(most, searched);
+        // Both bodies swing against each other, the lighter the more: what is behind damps more than it seems.
+        let (alone, ..) = limit("flexible-coupling", "zeta", &[("m_L", 1e-9)]);
+        assert!((alone - 0.383).abs() < 1e-6);
+        let (behind, _, mass) = limit("flexible-coupling", "zeta", &[("m_L", 10.0)]);
+        assert!((behind / (0.383 / (1.0 + 10.0 / mass).sqrt()) - 1.0).abs() < 1e-12);
     }
 
     /// Why a second body of 10 kg behind 20 kg is none, with these values in the place of sensible ones.

@@ -156,12 +156,10 @@ impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
     }
 
     /// Whether the best model with an effect, which leaves more than the sensors make, predicts better in another reading.
-    fn is_better_in(&self, other: &Reading<'_, F>) -> bool {
+    fn is_better_in(&self, other: &Reading<'_, F>, stop: &(dyn Fn() -> bool + Sync)) -> bool {
         let (top, effects) = self.climb.top();
-        effects > 0 && !self.is_complete() && {
-            let fitter = Fitter::new(other.family, other.searched());
-            reading::is_better(top, &fitter)
-        }
+        let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
+        effects > 0 && !self.is_complete() && !stop() && reading::is_better(top, &fitter)
     }
 }
 
@@ -351,7 +349,7 @@ impl<'a> Run<'a> {
             // What a model lacks may decide for the wrong one: beside what it lacked most it is asked once more.
             _ => {
                 let first = first();
-                let asked = there.filter(|there| first.is_better_in(&there.reading));
+                let asked = there.filter(|there| first.is_better_in(&there.reading, self.stop));
                 (first, asked.map(|there| (second(there), 0.0)))
             }
         };

@@ -76,6 +76,15 @@ mod tests {
     }
 
     #[test]
+    fn a_model_is_better_in_the_reading_that_it_is_true_of() {
+        let wave: (usize, &[f64]) = (WAVE, &[0.05]);
+        let (with, without) = (Plant::new(2, &[wave, (BEAT, &[0.03])]), Plant::new(2, &[wave]));
+        let is_better = |model: &Node, other: &Plant| is_better(model, &Fitter::new(other, other));
+        assert!(is_better(&model(&with, &[wave]), &without));
+        assert!(!is_better(&model(&without, &[wave]), &with));
+    }
+
+    #[test]
     fn a_reading_in_which_an_effect_does_nothing_needs_less() {
         let wave: (usize, &[f64]) = (WAVE, &[0.05]);
         let both = Plant::new(2, &[wave, (BEAT, &[0.03])]);

@@ -70,19 +70,6 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         return None;
     }
     let intervals = intervals::of((family, ahead), node);
-    // What every model has turns forces into motion: where it may be anything, so may all that is told in its terms.
-    let always = node.model.terms.iter().filter(|index| family.terms()[**index].always);
-    let anything = always.flat_map(|index| {
-        let term = &family.terms()[*index];
-        let needed =
-            term.parameters.iter().filter(|p| p.lower > 0.0 && family.needs(*index, &p.name));
-        needed.map(|parameter| term.key(parameter))
-    });
-    let anything =
-        anything.map(|key| (intervals[&key].clone(), key)).find(|(is, _)| !is.identifiable);
-    if let Some((Estimate { low, high, unit, .. }, parameter)) = anything {
-        return Some((*added.last()?, Refusal::Unknown { parameter, low, high, unit }));
-    }
     added.into_iter().find_map(|index| {
         let term = &family.terms()[index];
         let lost = term.parameters.iter().enumerate().find(|(k, parameter)| {
