@@ -58,6 +58,16 @@ pub struct Parameter {
     pub extent: Option<Extent>,
 }
 
+/// Where the stroke begins and ends: of a recording that of its own.
+pub const STROKE: [Parameter; 2] = [
+    place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin),
+    place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd),
+];
+
+const fn place(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
+    Parameter::fixed(name, meaning, Quantity::Length, (-10.0, 10.0), default)
+}
+
 impl Parameter {
     /// A signed amplitude, searched within `+-high`.
     pub const fn signed(

@@ -6,6 +6,7 @@
 mod gain;
 mod wave;
 
+use super::about::STROKE;
 use super::{About, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use missing_physics::report::Course;
@@ -91,10 +92,6 @@ const fn moment(name: &'static str, meaning: &'static str, default: f64) -> Para
     Parameter::fixed(name, meaning, Quantity::Time, (-1e9, 1e9), default)
 }
 
-const fn place(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
-    Parameter::fixed(name, meaning, Quantity::Length, (-10.0, 10.0), default)
-}
-
 /// Free values beyond those at the begin of `span`.
 const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 1] {
     let mut all = [span[0]; KNOTS + 1];
@@ -114,10 +111,7 @@ const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 1] {
 }
 
 static OVER_TIME: [Parameter; KNOTS + 1] = parameters([BEGIN, END]);
-static OVER_POSITION: [Parameter; KNOTS + 1] = parameters([
-    place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin),
-    place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd),
-]);
+static OVER_POSITION: [Parameter; KNOTS + 1] = parameters(STROKE);
 
 static FRICTION: About = About {
     name: "friction-over-time",

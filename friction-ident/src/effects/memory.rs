@@ -5,6 +5,13 @@ use super::{Motion, Parameters, Past};
 /// What a memory that asks of the past only for the begin of the step must know, s.
 pub const BEGIN_OF_STEP: f64 = 1e-9;
 
+/// From the begin of the step that is being taken to where a level is asked for, s.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub fn since_begin(begin: f64, now: f64) -> f64 {
+    (now - begin).max(0.0)
+}
+
 /// Shapes what the friction level sees, from a state of its own.
 pub trait Memory: Sync + Send {
     /// State variables per lane.

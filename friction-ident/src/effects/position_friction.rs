@@ -1,8 +1,9 @@
 //! Friction that varies along the stroke: straightness, preload, wear.
 
+use super::about::STROKE;
 use super::c_law::profile;
 use super::cosines;
-use super::{About, Apart, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot};
+use super::{About, Apart, CLaw, Effect, Motion, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 
 /// `level += sum_k c_k cos(k pi u)` over the stroke, `u` from 0 to 1: smooth, without a mean, so that
@@ -25,10 +26,6 @@ const NAMES: [&str; DETAILED] = [
     "c_14", "c_15", "c_16", "c_17", "c_18", "c_19", "c_20",
 ];
 
-const fn place(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
-    Parameter::fixed(name, meaning, Quantity::Length, (-10.0, 10.0), default)
-}
-
 const fn amplitude(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
     Parameter::signed(name, meaning, Quantity::Force, 100.0, default)
 }
@@ -50,8 +47,8 @@ const fn parameters<const LAST: usize, const ALL: usize>(
     parameters
 }
 
-const START: Parameter = place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin);
-const END: Parameter = place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd);
+const START: Parameter = STROKE[0];
+const END: Parameter = STROKE[1];
 const SHOWS: &str = "(residual x sign of velocity) against position";
 const REFERENCE: &str =
     "M. R. Popovic, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14, 1998";

@@ -3,7 +3,7 @@
 
 mod hysteresis;
 
-use super::memory::BEGIN_OF_STEP;
+use super::memory::{BEGIN_OF_STEP, since_begin};
 use super::ripple::LEADS;
 use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
 use crate::axis::Quantity;
@@ -136,8 +136,7 @@ vectorised! {
         let (velocity, drive_force) = (&velocity[..n], &drive_force[..n]);
         let (distance, direction) = (&distance[..n], &direction[..n]);
         for i in 0..n {
-            // From the begin of the step to where the level is asked for.
-            let ahead = (now[i] - begin[i]).max(0.0) * velocity[i].abs();
+            let ahead = since_begin(begin[i], now[i]) * velocity[i].abs();
             // At rest the drive says where it will go: else the level would come a step after the breakaway.
             let going = if velocity[i] == 0.0 { drive_force[i] } else { velocity[i] };
             let turns = going * direction[i] < 0.0;

@@ -1,8 +1,9 @@
 //! Viscous friction that varies along the stroke: lubricant that is not spread evenly, a screw that is warm in the middle.
 
+use super::about::STROKE;
 use super::c_law::profile;
 use super::cosines;
-use super::{About, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
+use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 
 /// `v sum_k c_k cos(k pi u)` over the stroke, `u` from 0 to 1: smooth, without a mean, so that it does not compete with
@@ -17,10 +18,6 @@ const fn amplitude(name: &'static str, default: f64) -> Parameter {
     Parameter::signed(name, "amplitude of cos(k pi u)", Quantity::Damping, 2000.0, default)
 }
 
-const fn place(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
-    Parameter::fixed(name, meaning, Quantity::Length, (-10.0, 10.0), default)
-}
-
 static ABOUT: About = About {
     name: "viscous-stroke",
     title: "viscous friction along the stroke",
@@ -32,8 +29,8 @@ static ABOUT: About = About {
         amplitude("c_4", 0.0),
         amplitude("c_5", 0.0),
         amplitude("c_6", 0.0),
-        place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin),
-        place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd),
+        STROKE[0],
+        STROKE[1],
     ],
     slots: &[Slot::SmoothForce],
     shows: "(residual / velocity) against position, the same for fast and slow passes",

@@ -264,21 +264,14 @@ impl FrictionFamily {
     fn give(&self, model: &Fitted) -> f64 {
         let level = self.value(model, "coulomb", "F_C").unwrap_or(0.0);
         let gives = model.terms.iter().enumerate().find_map(|(place, term)| {
-            let effect = self.effects[term.checked_sub(1)?];
-            let full = self.in_full(effect, *term, &model.values[model.range(self, place)]);
-            effect.gives(&full.iter().map(|of| of[0]).collect::<Vec<f64>>(), level)
+            self.effect(*term)?.gives(&self.values_in_full(model, place)?, level)
         });
         gives.unwrap_or(0.0)
     }
 
     /// Values of a term with those that are known from elsewhere, in the order of its effect's table, and the limits of
     /// their search below and above.
-    pub(super) fn in_full(
-        &self,
-        effect: &dyn Effect,
-        term: usize,
-        fitted: &[f64],
-    ) -> Vec<[f64; 3]> {
+    fn in_full(&self, effect: &dyn Effect, term: usize, fitted: &[f64]) -> Vec<[f64; 3]> {
         let parameters = &self.terms[term].parameters;
         let table = effect.about().parameters.iter().filter(|p| !super::limits::is_fixed(p));
         let free = |name: &str| parameters.iter().position(|free| free.name == name);
@@ -287,6 +280,13 @@ impl FrictionFamily {
             None => Some([self.known_value(effect, p.name)?, 0.0, f64::INFINITY]),
         });
         each.collect()
+    }
+
+    /// All values of the effect at a place of a model, known ones among them.
+    pub(super) fn values_in_full(&self, model: &Fitted, place: usize) -> Option<Vec<f64>> {
+        let term = model.terms[place];
+        let full = self.in_full(self.effect(term)?, term, &model.values[model.range(self, place)]);
+        Some(full.iter().map(|of| of[0]).collect())
     }
 
     /// Rms of the recorded force.

@@ -75,8 +75,7 @@ impl FrictionFamily {
         let mut added = model.terms.iter().enumerate().filter(|(_, t)| !base.terms.contains(t));
         added.find_map(|(place, &term)| {
             let effect = self.effect(term)?;
-            let full = self.in_full(effect, term, &model.values[model.range(self, place)]);
-            let late = effect.lateness(&full.iter().map(|of| of[0]).collect::<Vec<f64>>())?;
+            let late = effect.lateness(&self.values_in_full(model, place)?)?;
             let refusal = Refusal::NotThatEffect {
                 effect: effect.about().name.to_owned(),
                 value: NamedValue {

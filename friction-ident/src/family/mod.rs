@@ -638,8 +638,7 @@ impl ModelFamily for FrictionFamily {
         let most = || {
             let effect = self.effect(term)?;
             let place = model.terms.iter().position(|t| *t == term)?;
-            let full = self.in_full(effect, term, &model.values[model.range(self, place)]);
-            let values: Vec<f64> = full.iter().map(|of| of[0]).collect();
+            let values = self.values_in_full(model, place)?;
             effect.most(&parameter.name, &values, self.mass_of(model))
         };
         (parameter.lower, parameter.upper.min(most().unwrap_or(f64::INFINITY)))

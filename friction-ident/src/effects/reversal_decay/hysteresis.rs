@@ -2,7 +2,7 @@
 
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
-use crate::effects::memory::BEGIN_OF_STEP;
+use crate::effects::memory::{BEGIN_OF_STEP, since_begin};
 use crate::effects::{
     About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
@@ -130,8 +130,7 @@ vectorised! {
         let (size, length, begin, now) = (&p.get(0)[..n], &p.get(1)[..n], &begin[..n], &now[..n]);
         let (velocity, drive_force, share) = (&velocity[..n], &drive_force[..n], &share[..n]);
         for i in 0..n {
-            // From the begin of the step to where the level is asked for.
-            let ahead = (now[i] - begin[i]).max(0.0) * velocity[i].abs();
+            let ahead = since_begin(begin[i], now[i]) * velocity[i].abs();
             // At rest the drive says where it will go.
             let to = sign(if velocity[i] == 0.0 { drive_force[i] } else { velocity[i] });
             level[i] += size[i] * to * (to + (share[i] - to) * exp(-ahead / length[i]));

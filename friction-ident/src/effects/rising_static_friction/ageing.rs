@@ -2,7 +2,7 @@
 
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
-use crate::effects::memory::BEGIN_OF_STEP;
+use crate::effects::memory::{BEGIN_OF_STEP, since_begin};
 use crate::effects::{
     About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
@@ -129,8 +129,7 @@ vectorised! {
         let (size, distance, speed) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
         let (begin, now, velocity, age) = (&begin[..n], &now[..n], &velocity[..n], &age[..n]);
         for i in 0..n {
-            // From the begin of the step to where the level is asked for.
-            let ahead = (now[i] - begin[i]).max(0.0);
+            let ahead = since_begin(begin[i], now[i]);
             let age = aged(age[i], ahead, ahead * velocity[i].abs() / distance[i]);
             level[i] += size[i] * ln(1.0 + age * speed[i] / distance[i]);
         }

@@ -1,16 +1,13 @@
 //! A spring whose stiffness varies along the stroke: bellows, flexures, cables that tighten.
 
 use crate::axis::Quantity;
-use crate::effects::{About, CLaw, Effect, Extent, Motion, Parameter, Parameters, Slot, Smooth};
+use crate::effects::about::STROKE;
+use crate::effects::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::simd::vectorised;
 
 /// `k d + F_2 u^2 + F_3 u^3` with the way `d` from the middle of the stroke and the share `u` of half the stroke that it is.
 #[derive(Clone, Copy, Debug)]
 pub struct Stiffening;
-
-const fn place(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
-    Parameter::fixed(name, meaning, Quantity::Length, (-10.0, 10.0), default)
-}
 
 static ABOUT: About = About {
     name: "spring:stiffening",
@@ -32,8 +29,8 @@ static ABOUT: About = About {
             100.0,
             1.0,
         ),
-        place("start", "begin of the stroke", 0.0).taken_from(Extent::StrokeBegin),
-        place("end", "end of the stroke", 0.3).taken_from(Extent::StrokeEnd),
+        STROKE[0],
+        STROKE[1],
     ],
     slots: &[Slot::SmoothForce],
     shows: "residual against position, bent, the same for both directions",

@@ -4,8 +4,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::{Search, TRIED};
-use crate::ahead::fit::Fitter;
+use super::Search;
 use crate::ahead::node::Node;
 use crate::ahead::screen::Promise;
 use crate::family::ModelFamily;
@@ -32,15 +31,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if effects(&chosen).len() <= most || (self.stop)() {
             return begin.iter().copied().cloned().collect();
         }
-        let part = self.ahead.part();
-        let fitter = Fitter::new(self.family, part.as_deref().unwrap_or(self.ahead));
-        let fitter = fitter.stopped_by(self.stop);
-        let tried = begin.par_iter().filter_map(|promise| {
-            let starts = promise.starts.iter();
-            let nodes = starts.map(|start| fitter.fit(start.clone(), setting, TRIED));
-            let best = nodes.min_by(|a, b| a.deviation.total_cmp(&b.deviation))?;
-            Some((*promise, best))
-        });
+        let tried = begin.par_iter();
+        let tried = tried.filter_map(|promise| Some((*promise, self.tried(promise, setting)?)));
         let mut tried: Vec<(&Promise, Node)> = tried.collect();
         tried.sort_by(|(_, a), (_, b)| a.deviation.total_cmp(&b.deviation));
         let mut go_on = effects(first);

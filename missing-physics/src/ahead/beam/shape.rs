@@ -21,15 +21,19 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if let [start] = &promise.starts[..] {
             return Some(fit(start.clone(), STEPS.0));
         }
-        // Which start leads deepest shows on a part.
+        let best = self.tried(promise, setting)?;
+        Some(fit(best.model, STEPS.0 - TRIED))
+    }
+
+    /// The best of a candidate's starts after a few steps: which leads deepest shows on a part.
+    pub(super) fn tried(&self, promise: &Promise, setting: usize) -> Option<Node> {
         let part = self.ahead.part();
         let fitter = Fitter::new(self.family, part.as_deref().unwrap_or(self.ahead));
         let fitter = fitter.stopped_by(self.stop);
         let starts = promise.starts.par_iter();
         let tried: Vec<Node> =
             starts.map(|start| fitter.fit(start.clone(), setting, TRIED)).collect();
-        let best = tried.into_iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation))?;
-        Some(fit(best.model, STEPS.0 - TRIED))
+        tried.into_iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation))
     }
 
     /// The node at the bottom of its valley, or of a lower one beside it.
