@@ -4,6 +4,7 @@
 //! instruction set. No fused multiply-add is enabled, and every lane is computed on its own: results
 //! are the same to the bit on every machine and for every number of lanes.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// Instruction sets in use.
@@ -56,6 +57,18 @@ fn detect() -> InstructionSet {
 #[inline(always)]
 pub(crate) fn limited(x: f64, cap: f64) -> f64 {
     x.max(-cap).min(cap)
+}
+
+/// Lanes that are left out together: as many as the widest instruction set takes at once.
+pub(crate) const STRETCH: usize = 8;
+
+/// The stretches of lanes of which one at least is open, above 0.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(crate) fn open_stretches(open: &[f64]) -> impl Iterator<Item = Range<usize>> {
+    let stretches = open.chunks(STRETCH).enumerate();
+    let open = stretches.filter(|(_, lanes)| lanes.iter().any(|open| *open > 0.0));
+    open.map(|(k, lanes)| k * STRETCH..k * STRETCH + lanes.len())
 }
 
 /// -1, 0 or 1.

@@ -43,6 +43,7 @@ impl Contact {
         self.last = Some(position);
         let step = Step {
             duration: &[duration],
+            open: &[duration],
             displacement: &[position - last],
             level: &[level],
             breakaway: &[breakaway],

@@ -90,6 +90,7 @@ pub trait Element: Sync + Send {
             let (level, breakaway) = ([leg.level], [leg.breakaway]);
             let step = Step {
                 duration: &duration,
+                open: &duration,
                 displacement: &displacement,
                 level: &level,
                 breakaway: &breakaway,
@@ -141,6 +142,8 @@ pub struct Leg {
 pub struct Step<'a> {
     /// Length of the step, s.
     pub duration: &'a [f64],
+    /// Above 0 for plants whose answer is asked; that of others may be left out.
+    pub open: &'a [f64],
     /// Displacement of the mass in the step, m or rad.
     pub displacement: &'a [f64],
     /// Friction level in the step, N or N m.

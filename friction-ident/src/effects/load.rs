@@ -15,11 +15,21 @@ pub(super) struct Load {
 
 /// What pulls the load along in a step, against how far the mass runs ahead of it in the step.
 pub(super) trait Connection {
-    /// Mean force on the load, and its slope; it must not decrease.
-    fn pull(&self, ahead: f64) -> (f64, f64);
+    /// Mean force on the load, which must not decrease.
+    fn pull(&self, ahead: f64) -> Pull;
 
     /// Where `inertia` times what the mass runs ahead and the pull are `total` together; `inertia > 0`.
     fn run_ahead(&self, inertia: f64, total: f64) -> f64;
+}
+
+/// What a connection does over a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pull {
+    /// Mean force on the load, and its slope.
+    pub force: f64,
+    pub slope: f64,
+    /// Whether the connection is what it was taken for.
+    pub holds: bool,
 }
 
 /// A step of the load.
@@ -30,6 +40,8 @@ pub(super) struct Pulled {
     pub slope: f64,
     /// Mean velocity of the load.
     pub mean: f64,
+    /// Whether the connection was what it was taken for wherever it was asked.
+    pub holds: bool,
 }
 
 impl Load {
@@ -63,10 +75,10 @@ impl Load {
         let momentum = 2.0 * mass * velocity * rate;
         let (s, half) = (if velocity < 0.0 { -1.0 } else { 1.0 }, 0.5 * velocity);
         // What friction would have to take for the load to stop at the end of the step, and to stay at rest.
-        let (stopping, stop_stiffness) = connection.pull(moved - r * half);
-        let (resting, rest_stiffness) = connection.pull(moved);
-        let stop = s * (momentum + stopping - inertia * half);
-        let turn = s * (momentum + resting);
+        let stopping = connection.pull(moved - r * half);
+        let resting = connection.pull(moved);
+        let stop = s * (momentum + stopping.force - inertia * half);
+        let turn = s * (momentum + resting.force);
         let stops = level > 0.0 && stop >= 0.0 && stop <= level;
         let rests = level > 0.0 && stop < 0.0 && turn < 0.0 && turn >= -level;
         let back = if stop < 0.0 && turn < -level { -s * level } else { 0.0 };
@@ -75,18 +87,19 @@ impl Load {
         // A load of nothing that nothing holds goes along.
         let per_way = (inertia * rate).max(f64::MIN_POSITIVE);
         let ahead = connection.run_ahead(per_way, per_way * moved - free);
-        let (sliding, stiffness) = connection.pull(ahead);
-        let yielding = stiffness * per_way / (per_way + stiffness);
-        let pulled = if stops { stopping } else { sliding };
-        let slope = if stops { stop_stiffness } else { yielding };
+        let sliding = connection.pull(ahead);
+        let yielding = sliding.slope * per_way / (per_way + sliding.slope);
+        let pulled = if stops { stopping.force } else { sliding.force };
+        let slope = if stops { stopping.slope } else { yielding };
         let mean = if stops { half } else { (moved - ahead) * rate };
-        let pulled = if rests { resting } else { pulled };
-        let slope = if rests { rest_stiffness } else { slope };
+        let pulled = if rests { resting.force } else { pulled };
+        let slope = if rests { resting.slope } else { slope };
         let mean = if rests { 0.0 } else { mean };
         Pulled {
-            force: if moves { pulled } else { resting },
+            force: if moves { pulled } else { resting.force },
             slope: if moves { slope } else { 0.0 },
             mean: if moves { mean } else { velocity },
+            holds: !moves || stopping.holds && resting.holds && sliding.holds,
         }
     }
 }

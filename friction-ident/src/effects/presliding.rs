@@ -503,6 +503,7 @@ mod tests {
                 assert!(contact.solve(p, &balance, &mut state, &mut velocity));
                 let step = Step {
                     duration: &[r],
+                    open: &[r],
                     displacement: &[r * velocity[0]],
                     level: &[level],
                     breakaway: &[breakaway],

@@ -150,6 +150,7 @@ impl Plants {
             let is_contact = Some(*k) == *contact;
             let step = Step {
                 duration: &s.left,
+                open: &s.open,
                 displacement: &s.displacement,
                 level: if is_contact { &s.level } else { &s.zero },
                 breakaway: if is_contact { &s.breakaway } else { &s.zero },
@@ -173,6 +174,7 @@ impl Plants {
             let is_contact = Some(*k) == *contact;
             let step = Step {
                 duration: &s.taken,
+                open: &s.taken,
                 displacement: &s.displacement,
                 level: if is_contact { &s.level } else { &s.zero },
                 breakaway: if is_contact { &s.breakaway } else { &s.zero },

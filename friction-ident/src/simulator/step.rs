@@ -115,6 +115,7 @@ impl Plants {
         // Only where a lane stands it matters what its elements do while it does not move.
         if attached && self.velocity.contains(&0.0) {
             self.scratch.displacement.fill(0.0);
+            self.scratch.open.copy_from_slice(&self.scratch.left);
             self.respond_elements();
         }
         let s = &mut self.scratch;
@@ -188,7 +189,7 @@ impl Plants {
 
     /// Mean velocity with the elements, by Newton from the displacement at hand.
     fn newton(&mut self) {
-        self.scratch.open.fill(1.0);
+        self.scratch.open.copy_from_slice(&self.scratch.left);
         for _ in 0..=self.iterations {
             self.respond_elements();
             let mut any_open = false;

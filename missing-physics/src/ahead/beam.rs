@@ -100,6 +100,8 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     untried: BTreeSet<usize>,
     /// Effects that promised most beside the best set of some size.
     promised: BTreeSet<usize>,
+    /// Whether what leaves more than the sensors make counts for nothing: what is left beside it is not asked.
+    pub all_or_nothing: bool,
 }
 
 impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
@@ -124,6 +126,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             tell,
             untried: BTreeSet::new(),
             promised: BTreeSet::new(),
+            all_or_nothing: false,
         }
     }
 
@@ -200,22 +203,26 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             best = self.beside_usual(&mut climb, best);
         }
         let mut best = self.usual_instead(&climb, best);
-        let (mut rounds, mut rival, mut unknown) = (0, None, None);
+        let (mut simplified, mut rival, mut unknown) = (BTreeSet::new(), None, None);
+        let mut asks = true;
         loop {
             let (needed, costs) = self.prune(&climb, best);
-            // What took the place of one effect may leave another one to a simpler one, too.
-            if rounds < ROUNDS {
-                rounds += 1;
+            // What took the place of one effect may leave another one to a simpler one, too; what leads back does not.
+            asks &= simplified.len() < ROUNDS && simplified.insert(needed.model.terms.clone());
+            if asks {
                 if let Some(simpler) = self.simplified(&climb, &needed, &costs) {
                     best = simpler;
                     continue;
                 }
-                rounds = ROUNDS;
+                asks = false;
             }
             let last = self.plainest(needed, &costs);
             if let Some(base) = self.with_other_law(&climb, &last) {
                 let climb = self.begin(base, Vec::new());
                 return self.finish(climb);
+            }
+            if self.all_or_nothing && !self.is_complete(&last) {
+                return self.conclude(climb, &last, (costs, 1.0), Screened::default(), None);
             }
             let told = not_told(self.family, self.ahead, &climb.base, &last);
             if let Some((term, refusal)) = told {

@@ -41,7 +41,8 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let thresholds = settings.thresholds;
     let most = thresholds.most.min(settings.most);
     let thresholds = Thresholds { most, ..thresholds };
-    let run = Run { settings, sets, thresholds, started, stop: &stop, tell: &tell };
+    let all_or_nothing = false;
+    let run = Run { settings, sets, thresholds, started, stop: &stop, tell: &tell, all_or_nothing };
     let there = here.family.other_reading().filter(|_| !stop());
     let there = there.and_then(|OtherReading { family, nats, decided }| {
         Some(Other { reading: Reading::of(family)?, nats, decided })
@@ -54,7 +55,9 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let asked = thresholds.in_part(here.whole.asked());
     let look = |most: usize| {
         let (here, there) = coloured.as_ref().filter(|_| most > 0 && !stop())?;
-        let run = Run { thresholds: Thresholds { most, ..run.thresholds }, ..run };
+        let thresholds = Thresholds { most, ..run.thresholds };
+        // Of residuals it may bear out the first one.
+        let run = Run { thresholds, all_or_nothing: !here.residuals, ..run };
         Some(run.begun(here, there.as_ref()).finished())
     };
 
@@ -330,6 +333,8 @@ struct Run<'a> {
     started: Instant,
     stop: &'a (dyn Fn() -> bool + Sync),
     tell: Tell<'a>,
+    /// Whether only what leaves nothing counts.
+    all_or_nothing: bool,
 }
 
 impl<'a> Run<'a> {
@@ -379,6 +384,7 @@ impl<'a> Run<'a> {
             .collect();
         let thresholds = self.thresholds.in_part(ahead.asked()).in_part(ahead.share());
         let mut search = Search::new(family, ahead, thresholds, candidates, self.stop, self.tell);
+        search.all_or_nothing = self.all_or_nothing;
         let (base, elsewhere) = if let Some(near) = &self.settings.start {
             (search.base_near(near.clone()), Vec::new())
         } else {

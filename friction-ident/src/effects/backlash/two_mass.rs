@@ -1,12 +1,14 @@
 //! Two masses and a gap between them: the impact at its ends is part of the law.
 
-use super::super::load::{Connection, Load, Pulled};
+use std::ops::Range;
+
+use super::super::load::{Connection, Load, Pull};
 use super::{About, AsFound, Effect, Parameter, Parameters, Refused, Slot, WIDTH, closed};
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
 use crate::effects::c_dynamics::LOAD as LOAD_IN_C;
 use crate::effects::{Along, Correction, Element, Onset, Response, SecondBody, Step};
-use crate::simd::{sign, vectorised};
+use crate::simd::{STRETCH, open_stretches, sign, vectorised};
 
 /// A second mass `m_L` with friction of its own that the mass meets at either end of a gap `b`, over a
 /// spring and a damper in parallel that push but never pull.
@@ -136,20 +138,53 @@ impl Gap {
         Self { side, open, pressed, behind: place + half, stiffness, damping }
     }
 
-    /// Force of the end where it starts, once it has left it by `way`.
+    /// Work of the end where it starts, once it has left it by `way`.
     #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
     #[inline(always)]
     fn let_go(&self, way: f64) -> f64 {
-        let spring =
-            0.5 * self.stiffness * self.pressed * self.pressed / way.max(f64::MIN_POSITIVE);
-        (spring - self.damping * self.pressed).max(0.0)
+        let spring = 0.5 * self.stiffness * self.pressed * self.pressed;
+        (spring - self.damping * self.pressed * way).max(0.0)
+    }
+}
+
+/// Where a gap goes in a step, seen from the side where it starts.
+struct Course {
+    /// How far the mass runs ahead where nothing holds it, and where it stays as it starts.
+    free: f64,
+    straight: f64,
+    /// How far its end is pressed for what comes at the other one.
+    still: f64,
+    /// Whether it comes to its end, leaves it, comes to the other one.
+    closes: bool,
+    opens: bool,
+    crosses: bool,
+}
+
+impl Gap {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn course(&self, inertia: f64, total: f64) -> Course {
+        let Self { side, open, pressed, behind, stiffness, damping } = *self;
+        let total = total * side;
+        let all = 0.5 * stiffness + damping + inertia;
+        // One division for the two of them.
+        let shared = 1.0 / (all * inertia);
+        let free = total * all * shared;
+        let line = (total - stiffness * pressed) * inertia * shared;
+        let let_go = self.let_go(behind);
+        let crosses = total * behind < let_go - inertia * behind * behind;
+        let opens = pressed > 0.0 && line < -pressed && !crosses;
+        let still = if let_go > 0.0 { pressed } else { 0.0 };
+        let closes = pressed <= 0.0 && free > open && !crosses;
+        let straight = if pressed > 0.0 { line.min(free) } else { free };
+        Course { free, straight, still, closes, opens, crosses }
     }
 }
 
 impl Connection for Gap {
     #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
     #[inline(always)]
-    fn pull(&self, ahead: f64) -> (f64, f64) {
+    fn pull(&self, ahead: f64) -> Pull {
         let Self { side, open, pressed, behind, stiffness, damping } = *self;
         let ahead = ahead * side;
         let per_way = 1.0 / ahead.abs().max(f64::MIN_POSITIVE);
@@ -171,7 +206,7 @@ impl Connection for Gap {
         let back = (0.5 * stiffness * share + damping) * after;
         let damped = if after > 0.0 { damping } else { 0.0 };
         let stiff = stiffness * share * (1.0 - 0.5 * share) + damped;
-        (side * (force - back), slope + stiff)
+        Pull { force: side * (force - back), slope: slope + stiff, holds: true }
     }
 
     /// A line while the end where it starts stays closed or both are open; else the larger root of
@@ -180,16 +215,9 @@ impl Connection for Gap {
     #[inline(always)]
     fn run_ahead(&self, inertia: f64, total: f64) -> f64 {
         let Self { side, open, pressed, behind, stiffness, damping } = *self;
+        let Course { free, straight, still, closes, opens, crosses } = self.course(inertia, total);
         let total = total * side;
-        let all = 0.5 * stiffness + damping + inertia;
-        let free = total / inertia;
-        let line = (total - stiffness * pressed) / all;
-        let let_go = self.let_go(behind);
-        let crosses = total < let_go - inertia * behind;
-        let opens = pressed > 0.0 && line < -pressed && !crosses;
-        let closes = pressed <= 0.0 && free > open && !crosses;
-        let still = if let_go > 0.0 { pressed } else { 0.0 };
-        let square = if opens { inertia } else { all };
+        let square = if opens { inertia } else { 0.5 * stiffness + damping + inertia };
         let way = if crosses { behind } else { open };
         let (toward, damped) = (if crosses { -total } else { total }, damping * (way - still));
         let linear =
@@ -201,7 +229,6 @@ impl Connection for Gap {
         let forth = linear >= 0.0;
         let above = if forth { linear + root } else { -2.0 * rest };
         let t = above / if forth { 2.0 * square } else { root - linear };
-        let closed = if pressed > 0.0 { line.min(free) } else { free };
         let ahead = if crosses {
             -t
         } else if opens {
@@ -209,68 +236,151 @@ impl Connection for Gap {
         } else if closes {
             t
         } else {
-            closed
+            straight
         };
         side * ahead
     }
 }
 
-#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
-#[inline(always)]
-fn pulled(
-    load: Load,
-    [width, stiffness, zeta]: [f64; 3],
-    r: f64,
-    moved: f64,
-    stretch: f64,
-    velocity: f64,
-) -> Pulled {
-    let rate = if r > 0.0 { 1.0 / r } else { 0.0 };
-    let damping = 2.0 * zeta * (stiffness * load.mass).sqrt() * rate;
-    // Next to nothing on the ground holds a load of nothing.
-    let viscous = load.viscous.max(NOTHING * stiffness * r);
-    let load = Load { viscous, ..load };
-    load.step(velocity, r, moved, &Gap::new(-stretch, 0.5 * width, stiffness, damping))
+/// The same while the end where it starts stays closed or the gap stays open: most of the time, and by far less.
+struct Stays(Gap);
+
+impl Connection for Stays {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn pull(&self, ahead: f64) -> Pull {
+        let Gap { side, open, pressed, behind, stiffness, damping } = self.0;
+        let ahead = ahead * side;
+        let (closed, reach) = (pressed > 0.0, pressed - open + ahead);
+        let after = reach.max(0.0);
+        let force = stiffness * (0.5 * (after + pressed)) + damping * (after - pressed);
+        let slope = stiffness * 0.5 + damping;
+        let pushes = closed && force > 0.0;
+        let (force, slope) = if pushes { (force, slope) } else { (0.0, 0.0) };
+        let is_open = reach <= 0.0 && -behind - ahead <= 0.0;
+        let holds = if closed { after > 0.0 } else { is_open };
+        Pull { force: side * force, slope, holds }
+    }
+
+    /// Not a number where it does not stay so.
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn run_ahead(&self, inertia: f64, total: f64) -> f64 {
+        let Course { straight, closes, opens, crosses, .. } = self.0.course(inertia, total);
+        self.0.side * if opens || closes || crosses { f64::NAN } else { straight }
+    }
+}
+
+/// Parameters of some lanes.
+struct Lanes<'a> {
+    mass: &'a [f64],
+    level: &'a [f64],
+    viscous: &'a [f64],
+    width: &'a [f64],
+    stiffness: &'a [f64],
+    zeta: &'a [f64],
+}
+
+/// A stretch of lanes: force, slope and mean velocity of each.
+type Stretch = [[f64; STRETCH]; 3];
+
+impl<'a> Lanes<'a> {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn new(p: Parameters<'a>, lanes: Range<usize>) -> Self {
+        let of = |k: usize| &p.get(k)[lanes.clone()];
+        let (mass, level, viscous) = (of(0), of(1), of(2));
+        Self { mass, level, viscous, width: of(3), stiffness: of(4), zeta: of(5) }
+    }
+
+    /// What the lanes do, from how long they go on, how far they move, and their states.
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn pulled(&self, r: &[f64], moved: &[f64], stretch: &[f64], velocity: &[f64]) -> Stretch {
+        let mut all = [[0.0; STRETCH]; 3];
+        // To the bit what the whole law says, so that it does not matter what the other lanes do.
+        if !self.through(Stays, r, moved, stretch, velocity, &mut all) {
+            self.through(|gap| gap, r, moved, stretch, velocity, &mut all);
+        }
+        all
+    }
+
+    /// The same over a connection; tells whether that was right in all of them.
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn through<C: Connection>(
+        &self,
+        connection: impl Fn(Gap) -> C,
+        r: &[f64],
+        moved: &[f64],
+        stretch: &[f64],
+        velocity: &[f64],
+        [force, slope, mean]: &mut Stretch,
+    ) -> bool {
+        let mut others = 0_u64;
+        let lanes = r.len().min(STRETCH);
+        let (moved, stretch, velocity) = (&moved[..lanes], &stretch[..lanes], &velocity[..lanes]);
+        let (mass, level, viscous) =
+            (&self.mass[..lanes], &self.level[..lanes], &self.viscous[..lanes]);
+        let (width, k, zeta) = (&self.width[..lanes], &self.stiffness[..lanes], &self.zeta[..lanes]);
+        for i in 0..lanes {
+            let (mass, level, stiffness, r) = (mass[i], level[i], k[i], r[i]);
+            let rate = if r > 0.0 { 1.0 / r } else { 0.0 };
+            let damping = 2.0 * zeta[i] * (stiffness * mass).sqrt() * rate;
+            // Next to nothing on the ground holds a load of nothing.
+            let viscous = viscous[i].max(NOTHING * stiffness * r);
+            let gap = Gap::new(-stretch[i], 0.5 * width[i], stiffness, damping);
+            let load = Load { mass, level, viscous };
+            let pulled = load.step(velocity[i], r, moved[i], &connection(gap));
+            (force[i], slope[i], mean[i]) = (pulled.force, pulled.slope, pulled.mean);
+            others += u64::from(!pulled.holds);
+        }
+        others == 0
+    }
 }
 
 vectorised! {
     fn answer(
         p: Parameters<'_>,
         duration: &[f64],
+        open: &[f64],
         displacement: &[f64],
         state: &[f64],
         force: &mut [f64],
         stiffness: &mut [f64],
     ) {
-        let n = duration.len();
-        let (mass, level, viscous) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
-        let (width, k, zeta) = (&p.get(3)[..n], &p.get(4)[..n], &p.get(5)[..n]);
-        let (stretch, velocity) = state.split_at(n);
-        let (displacement, velocity) = (&displacement[..n], &velocity[..n]);
-        let (force, stiffness) = (&mut force[..n], &mut stiffness[..n]);
-        for i in 0..n {
-            let load = Load { mass: mass[i], level: level[i], viscous: viscous[i] };
-            let gap = [width[i], k[i], zeta[i]];
-            let (r, moved) = (duration[i], displacement[i]);
-            let pulled = pulled(load, gap, r, moved, stretch[i], velocity[i]);
-            force[i] += pulled.force;
-            stiffness[i] += pulled.slope;
+        let (stretch, velocity) = state.split_at(duration.len());
+        for lanes in open_stretches(open) {
+            let [pulled, slope, _] = Lanes::new(p, lanes.clone()).pulled(
+                &duration[lanes.clone()], &displacement[lanes.clone()], &stretch[lanes.clone()], &velocity[lanes.clone()],
+            );
+            for (force, pulled) in force[lanes.clone()].iter_mut().zip(pulled) {
+                *force += pulled;
+            }
+            for (stiffness, slope) in stiffness[lanes].iter_mut().zip(slope) {
+                *stiffness += slope;
+            }
         }
     }
 
-    fn take(p: Parameters<'_>, duration: &[f64], displacement: &[f64], state: &mut [f64]) {
-        let n = duration.len();
-        let (mass, level, viscous) = (&p.get(0)[..n], &p.get(1)[..n], &p.get(2)[..n]);
-        let (width, k, zeta) = (&p.get(3)[..n], &p.get(4)[..n], &p.get(5)[..n]);
-        let (stretch, velocity) = state.split_at_mut(n);
-        let (displacement, velocity) = (&displacement[..n], &mut velocity[..n]);
-        for i in 0..n {
-            let load = Load { mass: mass[i], level: level[i], viscous: viscous[i] };
-            let gap = [width[i], k[i], zeta[i]];
-            let (r, moved) = (duration[i], displacement[i]);
-            let pulled = pulled(load, gap, r, moved, stretch[i], velocity[i]);
-            stretch[i] += if r > 0.0 { r * pulled.mean - moved } else { 0.0 };
-            velocity[i] = 2.0 * pulled.mean - velocity[i];
+    fn take(
+        p: Parameters<'_>,
+        duration: &[f64],
+        open: &[f64],
+        displacement: &[f64],
+        state: &mut [f64],
+    ) {
+        let (stretch, velocity) = state.split_at_mut(duration.len());
+        for lanes in open_stretches(open) {
+            let plants = Lanes::new(p, lanes.clone());
+            let (duration, displacement) = (&duration[lanes.clone()], &displacement[lanes.clone()]);
+            let (stretch, velocity) = (&mut stretch[lanes.clone()], &mut velocity[lanes]);
+            let [_, _, mean] = plants.pulled(duration, displacement, stretch, velocity);
+            for i in 0..duration.len() {
+                let (r, moved) = (duration[i], displacement[i]);
+                stretch[i] += if r > 0.0 { r * mean[i] - moved } else { 0.0 };
+                velocity[i] = 2.0 * mean[i] - velocity[i];
+            }
         }
     }
 }
@@ -290,11 +400,11 @@ impl Element for TwoMass {
     }
 
     fn respond(&self, p: Parameters<'_>, step: &Step<'_>, state: &[f64], out: &mut Response<'_>) {
-        answer(p, step.duration, step.displacement, state, out.force, out.stiffness);
+        answer(p, step.duration, step.open, step.displacement, state, out.force, out.stiffness);
     }
 
     fn commit(&self, p: Parameters<'_>, step: &Step<'_>, state: &mut [f64]) {
-        take(p, step.duration, step.displacement, state);
+        take(p, step.duration, step.open, step.displacement, state);
     }
 
     /// Well inside the gap the mass moves alone, up to its end; else both bodies move together.

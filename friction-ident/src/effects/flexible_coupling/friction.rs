@@ -4,7 +4,7 @@ use crate::effects::CDynamics;
 use crate::effects::c_dynamics::LOAD as LOAD_IN_C;
 use std::f64::consts::TAU;
 
-use super::super::load::{Connection, Load, Pulled};
+use super::super::load::{Connection, Load, Pull, Pulled};
 use super::{
     About, AsFound, Correction, Effect, Element, FREQUENCY, LOAD, Onset, Parameter, Parameters,
     Refused, Response, Slot, Step, ZETA, not_one,
@@ -157,8 +157,8 @@ struct Coupling {
 impl Connection for Coupling {
     #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
     #[inline(always)]
-    fn pull(&self, ahead: f64) -> (f64, f64) {
-        (self.start + self.slope * ahead, self.slope)
+    fn pull(&self, ahead: f64) -> Pull {
+        Pull { force: self.start + self.slope * ahead, slope: self.slope, holds: true }
     }
 
     #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]

@@ -228,6 +228,7 @@ mod tests {
         let mean = |moved: f64| {
             let step = Step {
                 duration: &[1e-3],
+                open: &[1.0],
                 displacement: &[moved],
                 level: &[5.0],
                 breakaway: &[5.0],

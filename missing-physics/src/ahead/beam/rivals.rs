@@ -49,8 +49,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             Some((rival, free))
         });
         let free: Vec<(Rival, Node)> = free.collect();
+        let added = Self::added(&climb.base, last).into_par_iter();
+        let each = added.map(|term| (term, self.without(climb, last, term)));
+        let without: Vec<(usize, Node)> = each.collect();
         let each = free.into_iter().filter_map(|(rival, free)| {
-            if (self.stop)() { None } else { self.rival(climb, last, (&rival, free)) }
+            if (self.stop)() { None } else { self.rival(climb, last, &without, (&rival, free)) }
         });
         each.max_by(|a, b| {
             // What leaves nothing is what there is, however many nats it takes to say so.
@@ -83,8 +86,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         Some(self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2)))
     }
 
-    /// What a rival does, with which the base model is `free`.
-    fn rival(&mut self, climb: &Climb, last: &Node, (rival, free): (&Rival, Node)) -> Option<Does> {
+    /// What a rival does, with which the base model is `free`; the last model is known `without` each of its effects.
+    fn rival(
+        &mut self,
+        climb: &Climb,
+        last: &Node,
+        without: &[(usize, Node)],
+        (rival, free): (&Rival, Node),
+    ) -> Option<Does> {
         let base = &climb.base;
         let added = Self::added(base, last);
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
@@ -101,7 +110,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let (mut kept, beside) = if added.is_empty() || (alone && self.is_complete(&free)) {
             (Vec::new(), free)
         } else {
-            let (kept, beside) = self.needed_beside(base, last, &free, rival);
+            let stay = self.beyond(last, without, &free, base, rival);
+            // Beside what leaves nothing a rival counts by what it takes back.
+            if stay.len() == added.len() && self.is_complete(last) {
+                return None;
+            }
+            let (kept, beside) = self.needed_beside(base, last, &free, rival, &stay);
             if !self.does_as_much(base, last, &beside, added.len() - kept.len(), rival) {
                 return None;
             }
@@ -156,13 +170,33 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         outcome == Outcome::Rival
     }
 
-    /// The effects that are needed beside a rival, as much as any that is added, and the model with them and with it.
+    /// The effects that a rival cannot make up for, by what it promises beside the model `without` each.
+    fn beyond(
+        &self,
+        last: &Node,
+        without: &[(usize, Node)],
+        free: &Node,
+        base: &Node,
+        rival: &Rival,
+    ) -> Vec<usize> {
+        let needed = self.thresholds.clear(self.comparison.compare(base, free).nats);
+        let each = without.par_iter().filter(|(term, without)| {
+            let screened = screen(self.family, self.ahead, without, &[rival.term], false);
+            let most = screened.promises.first().map_or(0.0, |promise| promise.gain) / PROMISED;
+            !self.is_kin(*term, rival) && self.comparison.compare(without, last).nats - most > needed
+        });
+        each.map(|(term, _)| *term).collect()
+    }
+
+    /// The effects that are needed beside a rival, as much as any that is added, and the model with them and with it;
+    /// those that `stay` are not asked.
     fn needed_beside(
         &mut self,
         base: &Node,
         last: &Node,
         free: &Node,
         rival: &Rival,
+        stay: &[usize],
     ) -> (Vec<usize>, Node) {
         let added = Self::added(base, last);
         let needed = self.thresholds.clear(self.comparison.compare(base, free).nats);
@@ -175,7 +209,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
         loop {
-            let each = kept.iter().map(|term| {
+            let each = kept.iter().filter(|term| !stay.contains(term)).map(|term| {
                 let others: Vec<usize> = kept.iter().copied().filter(|t| t != term).collect();
                 let without = if others.is_empty() { free.clone() } else { with(self, &others) };
                 (*term, self.comparison.compare(&without, &beside), without)
