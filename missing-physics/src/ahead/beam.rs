@@ -241,7 +241,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
             if rival.is_none() {
                 if let Some((without, found)) = self.instead(&climb, &last) {
-                    rival = Some(found);
+                    rival = found;
                     best = without;
                     continue;
                 }

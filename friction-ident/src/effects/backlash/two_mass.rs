@@ -322,7 +322,8 @@ impl<'a> Lanes<'a> {
         let (moved, stretch, velocity) = (&moved[..lanes], &stretch[..lanes], &velocity[..lanes]);
         let (mass, level, viscous) =
             (&self.mass[..lanes], &self.level[..lanes], &self.viscous[..lanes]);
-        let (width, k, zeta) = (&self.width[..lanes], &self.stiffness[..lanes], &self.zeta[..lanes]);
+        let (width, k, zeta) =
+            (&self.width[..lanes], &self.stiffness[..lanes], &self.zeta[..lanes]);
         for i in 0..lanes {
             let (mass, level, stiffness, r) = (mass[i], level[i], k[i], r[i]);
             let rate = if r > 0.0 { 1.0 / r } else { 0.0 };
@@ -423,5 +424,48 @@ impl Element for TwoMass {
     fn iterations(&self) -> usize {
         // Soft in the gap, stiff at its ends, and stiff between two softer pieces where the load sticks.
         4
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn what_stays_closed_or_open_does_to_the_bit_what_the_whole_law_says(
+            place in -2.0..2.0_f64,
+            way in -1.0..1.0_f64,
+            velocity in -1.0..1.0_f64,
+            (mass, level, viscous) in (0.0..10.0_f64, 0.0..5.0_f64, 1e-3..100.0_f64),
+            damping in 0.0..1e4_f64,
+        ) {
+            let (half, r, stiffness) = (1e-4, 1e-3, 1e5);
+            let gap = || Gap::new(place * half, half, stiffness, damping);
+            let load = Load { mass, level, viscous };
+            let (velocity, moved) = (0.3 * velocity, 3.0 * half * way);
+            let (whole, stays) =
+                (load.step(velocity, r, moved, &gap()), load.step(velocity, r, moved, &Stays(gap())));
+            prop_assert!(whole.holds);
+            if stays.holds {
+                prop_assert_eq!(stays.force.to_bits() << 1, whole.force.to_bits() << 1);
+                prop_assert_eq!(stays.slope, whole.slope);
+                prop_assert_eq!(stays.mean, whole.mean);
+            }
+        }
+    }
+
+    #[test]
+    fn it_stays_as_it_is_well_inside_and_well_pressed_and_not_at_the_ends() {
+        let (half, r) = (1e-4, 1e-3);
+        let load = Load { mass: 5.0, level: 0.0, viscous: 1.0 };
+        let stays = |place: f64, velocity: f64, moved: f64| {
+            load.step(velocity, r, moved, &Stays(Gap::new(place, half, 1e5, 10.0))).holds
+        };
+        assert!(stays(0.0, 0.0, 0.5 * half) && stays(2.0 * half, 0.0, 0.0));
+        assert!(!stays(0.9 * half, 0.0, 0.5 * half), "it closes");
+        assert!(!stays(1.01 * half, 0.3, 0.0), "it opens");
     }
 }

@@ -26,18 +26,24 @@ struct Does {
     instead_of: usize,
     /// What it gains over the model with all of them, nats.
     nats: f64,
-    found: Remains,
+    /// What is told of it; nothing where other effects that are shapes of it do as much.
+    found: Option<Remains>,
 }
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The model without effects that something else makes up for, and what that is; with all of them where a rival does
     /// something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
-    pub(super) fn instead(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
+    pub(super) fn instead(
+        &mut self,
+        climb: &Climb,
+        last: &Node,
+    ) -> Option<(Node, Option<Remains>)> {
         let rival = self.rivalled(climb, last);
         // Beside the base a rival says more: what its course is.
         let nothing = Self::added(&climb.base, last).is_empty();
         let takes_back = rival.as_ref().is_some_and(|does| nothing || does.instead_of > 0);
         let outdone = if takes_back { None } else { self.outdone(climb, last) };
+        let outdone = outdone.map(|(without, found)| (without, Some(found)));
         outdone.or_else(|| rival.map(|does| (does.without, does.found)))
     }
 
@@ -49,11 +55,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             Some((rival, free))
         });
         let free: Vec<(Rival, Node)> = free.collect();
-        let added = Self::added(&climb.base, last).into_par_iter();
-        let each = added.map(|term| (term, self.without(climb, last, term)));
-        let without: Vec<(usize, Node)> = each.collect();
         let each = free.into_iter().filter_map(|(rival, free)| {
-            if (self.stop)() { None } else { self.rival(climb, last, &without, (&rival, free)) }
+            if (self.stop)() { None } else { self.rival(climb, last, (&rival, free)) }
         });
         each.max_by(|a, b| {
             // What leaves nothing is what there is, however many nats it takes to say so.
@@ -86,14 +89,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         Some(self.leapt(self.ahead, self.refit(&start, base.setting, STEPS.2)))
     }
 
-    /// What a rival does, with which the base model is `free`; the last model is known `without` each of its effects.
-    fn rival(
-        &mut self,
-        climb: &Climb,
-        last: &Node,
-        without: &[(usize, Node)],
-        (rival, free): (&Rival, Node),
-    ) -> Option<Does> {
+    /// What a rival does, with which the base model is `free`.
+    fn rival(&mut self, climb: &Climb, last: &Node, (rival, free): (&Rival, Node)) -> Option<Does> {
         let base = &climb.base;
         let added = Self::added(base, last);
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
@@ -110,12 +107,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let (mut kept, beside) = if added.is_empty() || (alone && self.is_complete(&free)) {
             (Vec::new(), free)
         } else {
-            let stay = self.beyond(last, without, &free, base, rival);
-            // Beside what leaves nothing a rival counts by what it takes back.
-            if stay.len() == added.len() && self.is_complete(last) {
-                return None;
-            }
-            let (kept, beside) = self.needed_beside(base, last, &free, rival, &stay);
+            let (kept, beside) = self.needed_beside(base, last, &free, rival);
             if !self.does_as_much(base, last, &beside, added.len() - kept.len(), rival) {
                 return None;
             }
@@ -127,9 +119,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let clear = self.thresholds.clear(self.comparison.compare(base, &beside).nats);
             // One that is more flexible may gain by what it is free to do.
             let freer = self.parameters(&beside) > self.parameters(&alone);
-            let as_good = self.comparison.compare(&alone, &beside).nats <= clear;
-            if as_good || freer && self.explains(base, &alone) {
+            let as_good = |set: &Node| self.comparison.compare(set, &beside).nats <= clear;
+            if as_good(&alone) || freer && self.explains(base, &alone) {
                 kept = shapes;
+            } else if let Some(other) = self.other_shapes(climb, (&shapes, &kept), rival, |set| {
+                as_good(set) && self.comparison.compare(last, set).nats > 0.0
+            }) {
+                let (all, instead_of) = (self.is_complete(other), shapes.len() - kept.len());
+                let nats = self.in_full(self.comparison.compare(last, other).nats);
+                return Some(Does { all, without: other.clone(), instead_of, nats, found: None });
             }
         }
         let gone: Vec<usize> = added.iter().copied().filter(|t| !kept.contains(t)).collect();
@@ -146,8 +144,26 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let course = self.family.course(rival.term, &self.values(&beside, rival));
         let instead_of = self.named(&gone);
         let rival = rival.title.to_owned();
-        let found = Remains::Rival { rival, instead_of, nats, course };
+        let found = Some(Remains::Rival { rival, instead_of, nats, course });
         Some(Does { all: self.is_complete(&beside), without, instead_of: gone.len(), nats, found })
+    }
+
+    /// The set that is `as_good` as a rival with as many `shapes` of it in other effects, beside those that are `kept`: of
+    /// sets that are alike the search took that with the fewest parameters, and a rival may be better than that one alone.
+    fn other_shapes<'c>(
+        &self,
+        climb: &'c Climb,
+        (shapes, kept): (&[usize], &[usize]),
+        rival: &Rival,
+        as_good: impl Fn(&Node) -> bool,
+    ) -> Option<&'c Node> {
+        let is_it = |set: &&Node| {
+            let added = Self::added(&climb.base, set);
+            let stays = |term: &usize| added.iter().any(|t| self.main(*t) == self.main(*term));
+            let others = added.iter().filter(|t| !self.is_kin(**t, rival)).count();
+            kept.iter().all(stays) && others == kept.len() && as_good(set)
+        };
+        climb.nodes.get(shapes.len())?.iter().find(is_it)
     }
 
     /// Whether a model with the rival predicts as well as the last one, or better where it makes up for one effect or
@@ -170,33 +186,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         outcome == Outcome::Rival
     }
 
-    /// The effects that a rival cannot make up for, by what it promises beside the model `without` each.
-    fn beyond(
-        &self,
-        last: &Node,
-        without: &[(usize, Node)],
-        free: &Node,
-        base: &Node,
-        rival: &Rival,
-    ) -> Vec<usize> {
-        let needed = self.thresholds.clear(self.comparison.compare(base, free).nats);
-        let each = without.par_iter().filter(|(term, without)| {
-            let screened = screen(self.family, self.ahead, without, &[rival.term], false);
-            let most = screened.promises.first().map_or(0.0, |promise| promise.gain) / PROMISED;
-            !self.is_kin(*term, rival) && self.comparison.compare(without, last).nats - most > needed
-        });
-        each.map(|(term, _)| *term).collect()
-    }
-
-    /// The effects that are needed beside a rival, as much as any that is added, and the model with them and with it;
-    /// those that `stay` are not asked.
+    /// The effects that are needed beside a rival, as much as any that is added, and the model with them and with it.
     fn needed_beside(
         &mut self,
         base: &Node,
         last: &Node,
         free: &Node,
         rival: &Rival,
-        stay: &[usize],
     ) -> (Vec<usize>, Node) {
         let added = Self::added(base, last);
         let needed = self.thresholds.clear(self.comparison.compare(base, free).nats);
@@ -209,7 +205,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
         loop {
-            let each = kept.iter().filter(|term| !stay.contains(term)).map(|term| {
+            let each = kept.iter().map(|term| {
                 let others: Vec<usize> = kept.iter().copied().filter(|t| t != term).collect();
                 let without = if others.is_empty() { free.clone() } else { with(self, &others) };
                 (*term, self.comparison.compare(&without, &beside), without)

@@ -26,8 +26,25 @@ fn a_shape_of_a_rival_that_predicts_worse_goes_with_the_others() {
     let (without, remains) =
         search(&plant, thresholds).instead(&climb(&plant, Vec::new()), &last).unwrap();
     assert!(without.effects(&plant).is_empty());
-    let Remains::Rival { instead_of, .. } = remains else { panic!("{remains:?}") };
+    let Some(Remains::Rival { instead_of, .. }) = remains else { panic!("{remains:?}") };
     assert_eq!(instead_of.len(), 2);
+}
+
+#[test]
+fn other_shapes_of_a_rival_that_predict_as_well_take_the_place_of_worse_ones() {
+    let thresholds = Thresholds { share: 0.0, ..narrow() };
+    let mut plant = Plant::new(11, &[(WAVE, &[0.1]), (BEAT, &[-0.04])]);
+    let last = node(&plant, &[(WAVE, &[0.1]), (PUSH, &[0.01])]);
+    let others = node(&plant, &[(WAVE, &[0.1]), (BEAT, &[-0.04])]);
+    for (kin, stand) in [(vec![WAVE, PUSH], false), (vec![WAVE, PUSH, BEAT], true)] {
+        plant.kin = kin;
+        let climb = climb(&plant, vec![Vec::new(), vec![last.clone(), others.clone()]]);
+        let (set, remains) = search(&plant, thresholds).instead(&climb, &last).unwrap();
+        assert_eq!(set.effects(&plant), if stand { vec![WAVE, BEAT] } else { Vec::new() });
+        assert_eq!(remains.is_none(), stand);
+        // They are not asked to give way to what is worse.
+        assert_eq!(search(&plant, thresholds).instead(&climb, &others).is_none(), stand);
+    }
 }
 
 #[test]
@@ -54,7 +71,7 @@ fn a_rival_takes_the_place_of_one_of_two_effects_that_leave_no_more_than_the_sen
     assert!(search.is_complete(&last));
     let (without, remains) = search.instead(&climb(&plant, Vec::new()), &last).unwrap();
     assert_eq!(without.effects(&plant), [PUSH]);
-    let Remains::Rival { instead_of, .. } = remains else { panic!("{remains:?}") };
+    let Some(Remains::Rival { instead_of, .. }) = remains else { panic!("{remains:?}") };
     assert_eq!(instead_of, ["wave"]);
 }
 
@@ -91,12 +108,12 @@ fn a_rival_that_is_told_beside_all_effects_does_not_keep_a_refused_set_from_taki
     let mut search = search(&plant, Thresholds { share: 0.0, ..narrow() });
     let (beside, remains) = search.instead(&climb, &last).unwrap();
     assert_eq!(beside.effects(&plant), [PUSH]);
-    assert!(matches!(remains, Remains::Rival { instead_of, .. } if instead_of.is_empty()));
+    assert!(matches!(remains, Some(Remains::Rival { instead_of, .. }) if instead_of.is_empty()));
     let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
     climb.refused.push((node(&plant, &[(WAVE, &[0.5])]), refusal));
     let (without, remains) = search.instead(&climb, &last).unwrap();
     assert!(without.effects(&plant).is_empty());
-    assert!(matches!(remains, Remains::Outdone { .. }), "{remains:?}");
+    assert!(matches!(remains, Some(Remains::Outdone { .. })), "{remains:?}");
 }
 
 #[test]
