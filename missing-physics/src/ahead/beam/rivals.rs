@@ -49,6 +49,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// The rival that does most: takes effects back, then gains.
     fn rivalled(&mut self, climb: &Climb, last: &Node) -> Option<Does> {
+        // Beside a base that leaves nothing a step by a thousandth of its friction is no finding.
+        if Self::added(&climb.base, last).is_empty() && self.leaves_nothing(&climb.base) {
+            return None;
+        }
         let rivals = self.ahead.rivals();
         let free = rivals.into_par_iter().filter_map(|rival| {
             let free = self.free(climb, last, &rival)?;

@@ -75,6 +75,33 @@ fn a_rival_takes_the_place_of_one_of_two_effects_that_leave_no_more_than_the_sen
     assert_eq!(instead_of, ["wave"]);
 }
 
+/// A model that lacks a force of some size, known to a band.
+fn lacks(node: &Node, size: f64, band: f64) -> Node {
+    node.clone().lacking(Series {
+        time: vec![0.0, 0.1],
+        force: vec![size, -size],
+        deviation: vec![band / 1.96; 2],
+        recorded: vec![9.0; 2],
+        known: vec![true; 2],
+    })
+}
+
+#[test]
+fn beside_a_base_that_leaves_nothing_a_rival_is_no_finding() {
+    let plant = Plant::new(13, &[(RIVAL, &[0.05])]);
+    let mut search = search(&plant, narrow());
+    let mut climb = climb(&plant, Vec::new());
+    let base = climb.base.clone();
+    assert!(search.instead(&climb, &base).is_some());
+    for (force, scale, nothing) in [(1.1, 0.99, false), (0.9, 1.01, false), (0.9, 0.99, true)] {
+        climb.base = lacks(&base, force, 0.5);
+        climb.base.scale = scale * crate::ahead::testing::NOISE;
+        assert_eq!(search.leaves_nothing(&climb.base), nothing, "{force} {scale}");
+    }
+    let last = climb.base.clone();
+    assert!(search.instead(&climb, &last).is_none());
+}
+
 /// What a refused set does to the last model.
 fn outdone(
     plant: &Plant,
@@ -171,15 +198,6 @@ fn what_explains_all_that_the_sensors_do_not_is_not_outdone() {
     climb.base.scale = 1.2 * crate::ahead::testing::NOISE;
     assert!(search.outdone(&climb, &last).is_some());
     // But for a force that is there beyond doubt: all of it.
-    let lacks = |node: &Node, size: f64, band: f64| {
-        node.clone().lacking(Series {
-            time: vec![0.0, 0.1],
-            force: vec![size, -size],
-            deviation: vec![band / 1.96; 2],
-            recorded: vec![9.0; 2],
-            known: vec![true; 2],
-        })
-    };
     for (before, left, band, explained) in
         [(2.0, 0.4, 0.5, true), (2.0, 0.5, 0.5, false), (2.0, 0.4, 1.1, false)]
     {
