@@ -434,6 +434,22 @@ mod tests {
     use super::super::element::Leg;
     use super::*;
 
+    /// Mean force of a contact and its slope over a step of 1 ms by `moved`, at a level of 5.
+    pub(super) fn mean(contact: &dyn Element, p: &[f64], state: &[f64], moved: f64) -> (f64, f64) {
+        let (duration, displacement, level) = ([1e-3], [moved], [5.0]);
+        let step = Step {
+            duration: &duration,
+            open: &duration,
+            displacement: &displacement,
+            level: &level,
+            breakaway: &level,
+        };
+        let (mut force, mut stiffness) = ([0.0], [0.0]);
+        let mut out = Response { force: &mut force, stiffness: &mut stiffness };
+        contact.respond(Parameters::new(p, 1), &step, state, &mut out);
+        (force[0], stiffness[0])
+    }
+
     /// Contact force along a path of displacements, from rest.
     pub(super) fn walk(contact: &dyn Element, p: &[f64], path: &[f64], level: f64) -> Vec<f64> {
         walk_to(contact, p, path, level, level)

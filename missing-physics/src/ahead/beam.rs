@@ -365,23 +365,17 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
     /// it lacks beyond doubt.
     fn explains(&self, base: &Node, node: &Node) -> bool {
         let all = || {
-            let (force, doubt) = self.lacks(base)?;
-            let (left, _) = self.lacks(node)?;
-            Some(force > doubt && left * left <= MOST_WITHIN * force * force)
+            let (force, band) = base.lacks(self.ahead)?;
+            let (left, _) = node.lacks(self.ahead)?;
+            Some(force > self.thresholds.local * band && left * left <= MOST_WITHIN * force * force)
         };
         self.budget(node) <= 1.0 && (!self.is_complete(base) || all().unwrap_or(false))
     }
 
     /// Whether a model errs no more than the sensors make, and lacks no force beyond doubt.
     fn leaves_nothing(&self, node: &Node) -> bool {
-        let lacks_none = self.lacks(node).is_some_and(|(force, doubt)| force <= doubt);
-        self.budget(node) <= 1.0 && lacks_none
-    }
-
-    /// The force that a model lacks, and how large it may be for what the sensors make of it.
-    fn lacks(&self, node: &Node) -> Option<(f64, f64)> {
-        let (force, band) = node.missing_force(self.ahead)?.size()?;
-        Some((force, self.thresholds.local * band))
+        let in_doubt = |(force, band)| force <= self.thresholds.local * band;
+        self.budget(node) <= 1.0 && node.lacks(self.ahead).is_some_and(in_doubt)
     }
 
     /// Terms of a node that the base does not have, in the order of the model.

@@ -323,8 +323,7 @@ impl Found {
         ahead: &dyn Ahead,
         (bands, share): (f64, f64),
     ) -> Option<(Lacking, f64)> {
-        let lacks = |node: &Node| node.missing_force(ahead).and_then(Series::size);
-        let ((last, band), (base, _)) = lacks(self.top().0).zip(lacks(&self.base))?;
+        let ((last, band), (base, _)) = self.top().0.lacks(ahead).zip(self.base.lacks(ahead))?;
         let still = last > bands * band && last * last > share * base * base;
         still.then(|| (Lacking { base, last, unit: family.quantity().unit }, band))
     }

@@ -23,8 +23,7 @@ pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<Re
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
     let mut worst: Vec<(f64, Remains)> = Vec::new();
-    let lacks = node.missing_force(ahead).and_then(Series::size);
-    if let Some((rms, band)) = lacks.filter(|(rms, band)| *rms > factor * band) {
+    if let Some((rms, band)) = node.lacks(ahead).filter(|(rms, band)| *rms > factor * band) {
         let lacks = Remains::MissingForce { rms, band, unit: unit.to_owned() };
         worst.push((f64::INFINITY, lacks));
     }

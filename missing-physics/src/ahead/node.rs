@@ -113,6 +113,11 @@ impl Node {
         self.missing_force.get_or_init(find).as_ref()
     }
 
+    /// Its rms and that of the half-widths of its band.
+    pub fn lacks(&self, ahead: &dyn Ahead) -> Option<(f64, f64)> {
+        self.missing_force(ahead).and_then(Series::size)
+    }
+
     /// One that lacks this force.
     #[cfg(test)]
     #[must_use]

@@ -128,6 +128,21 @@ struct Gap {
     damping: f64,
 }
 
+/// Where a gap goes in a step, seen from the side where it starts.
+struct Course {
+    /// What holds the mass while its end is closed, against how far it runs ahead.
+    all: f64,
+    /// How far the mass runs ahead where nothing holds it, and where it stays as it starts.
+    free: f64,
+    straight: f64,
+    /// How far its end is pressed for what comes at the other one.
+    still: f64,
+    /// Whether it comes to its end, leaves it, comes to the other one.
+    closes: bool,
+    opens: bool,
+    crosses: bool,
+}
+
 impl Gap {
     #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
     #[inline(always)]
@@ -145,22 +160,7 @@ impl Gap {
         let spring = 0.5 * self.stiffness * self.pressed * self.pressed;
         (spring - self.damping * self.pressed * way).max(0.0)
     }
-}
 
-/// Where a gap goes in a step, seen from the side where it starts.
-struct Course {
-    /// How far the mass runs ahead where nothing holds it, and where it stays as it starts.
-    free: f64,
-    straight: f64,
-    /// How far its end is pressed for what comes at the other one.
-    still: f64,
-    /// Whether it comes to its end, leaves it, comes to the other one.
-    closes: bool,
-    opens: bool,
-    crosses: bool,
-}
-
-impl Gap {
     #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
     #[inline(always)]
     fn course(&self, inertia: f64, total: f64) -> Course {
@@ -177,7 +177,7 @@ impl Gap {
         let still = if let_go > 0.0 { pressed } else { 0.0 };
         let closes = pressed <= 0.0 && free > open && !crosses;
         let straight = if pressed > 0.0 { line.min(free) } else { free };
-        Course { free, straight, still, closes, opens, crosses }
+        Course { all, free, straight, still, closes, opens, crosses }
     }
 }
 
@@ -215,9 +215,10 @@ impl Connection for Gap {
     #[inline(always)]
     fn run_ahead(&self, inertia: f64, total: f64) -> f64 {
         let Self { side, open, pressed, behind, stiffness, damping } = *self;
-        let Course { free, straight, still, closes, opens, crosses } = self.course(inertia, total);
+        let Course { all, free, straight, still, closes, opens, crosses } =
+            self.course(inertia, total);
         let total = total * side;
-        let square = if opens { inertia } else { 0.5 * stiffness + damping + inertia };
+        let square = if opens { inertia } else { all };
         let way = if crosses { behind } else { open };
         let (toward, damped) = (if crosses { -total } else { total }, damping * (way - still));
         let linear =
@@ -352,9 +353,10 @@ vectorised! {
     ) {
         let (stretch, velocity) = state.split_at(duration.len());
         for lanes in open_stretches(open) {
-            let [pulled, slope, _] = Lanes::new(p, lanes.clone()).pulled(
-                &duration[lanes.clone()], &displacement[lanes.clone()], &stretch[lanes.clone()], &velocity[lanes.clone()],
-            );
+            let plants = Lanes::new(p, lanes.clone());
+            let (duration, displacement) = (&duration[lanes.clone()], &displacement[lanes.clone()]);
+            let (stretch, velocity) = (&stretch[lanes.clone()], &velocity[lanes.clone()]);
+            let [pulled, slope, _] = plants.pulled(duration, displacement, stretch, velocity);
             for (force, pulled) in force[lanes.clone()].iter_mut().zip(pulled) {
                 *force += pulled;
             }

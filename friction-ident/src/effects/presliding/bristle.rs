@@ -209,7 +209,7 @@ impl Element for Bristle {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::walk;
+    use super::super::tests::{mean, walk};
     use super::*;
 
     #[test]
@@ -223,21 +223,7 @@ mod tests {
 
     #[test]
     fn the_slope_of_the_response_is_its_derivative() {
-        let p = [2e6, 3e3];
-        let p = Parameters::new(&p, 1);
-        let mean = |moved: f64| {
-            let step = Step {
-                duration: &[1e-3],
-                open: &[1.0],
-                displacement: &[moved],
-                level: &[5.0],
-                breakaway: &[5.0],
-            };
-            let (mut force, mut stiffness) = ([0.0], [0.0]);
-            let mut out = Response { force: &mut force, stiffness: &mut stiffness };
-            LUGRE.respond(p, &step, &[1.5], &mut out);
-            (force[0], stiffness[0])
-        };
+        let mean = |moved: f64| mean(&LUGRE, &[2e6, 3e3], &[1.5], moved);
         for moved in [-3e-6, -1e-7, 1e-7, 2e-6] {
             let numeric = (mean(moved + 1e-10).0 - mean(moved - 1e-10).0) / 2e-10;
             assert!((mean(moved).1 / numeric - 1.0).abs() < 1e-4);

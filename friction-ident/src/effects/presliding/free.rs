@@ -223,17 +223,7 @@ mod tests {
     fn mean(used: f64, moved: f64) -> (f64, f64) {
         let mut state = [used; 2 * ELEMENTS];
         state[ELEMENTS..].copy_from_slice(&shares(&P));
-        let step = Step {
-            duration: &[1e-3],
-            open: &[1.0],
-            displacement: &[moved],
-            level: &[5.0],
-            breakaway: &[5.0],
-        };
-        let (mut force, mut stiffness) = ([0.0], [0.0]);
-        let mut out = Response { force: &mut force, stiffness: &mut stiffness };
-        Free.respond(Parameters::new(&P, 1), &step, &state, &mut out);
-        (force[0], stiffness[0])
+        super::super::tests::mean(&Free, &P, &state, moved)
     }
 
     #[test]

@@ -31,7 +31,7 @@ struct Does {
 }
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The model without effects that something else makes up for, and what that is; with all of them where a rival does
+    /// The model without effects that something else makes up for, and what that is (nothing where these are other effects); with all of them where a rival does
     /// something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
     pub(super) fn instead(
         &mut self,
