@@ -10,7 +10,6 @@ use super::node::Node;
 use super::refused::{refused, unknown};
 use super::screen::Promise;
 use super::{Ahead, local};
-use crate::family::Series;
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Lacking, NoCause, Refusal, Remains, Remark};
 use crate::statistics::basis::dot;
@@ -437,6 +436,7 @@ mod tests {
 
     use super::*;
     use crate::ahead::testing::{BEAT, Plant, TONE, TWIN, WAVE};
+    use crate::family::Series;
     use crate::report::Fault;
 
     /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.

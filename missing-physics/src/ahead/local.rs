@@ -3,7 +3,6 @@
 
 use super::Ahead;
 use super::node::Node;
-use crate::family::Series;
 use crate::report::{Fault, Remains};
 
 /// Bins of equal count along time and each coordinate.
@@ -69,6 +68,7 @@ mod tests {
     use super::*;
     use crate::ahead::fit;
     use crate::ahead::testing::Plant;
+    use crate::family::Series;
 
     #[test]
     fn the_bin_with_the_largest_errors_is_found() {
