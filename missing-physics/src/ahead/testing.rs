@@ -12,8 +12,8 @@ use crate::report::Refusal;
 
 use super::{Ahead, Rival, Trial, trials};
 use crate::family::{
-    ComparedQuantity, Coordinate, Fitted, ModelFamily, Regime, Role, Series, Term as About,
-    TermParameter,
+    ComparedQuantity, Coordinate, Fitted, Generic, ModelFamily, Regime, Role, Series,
+    Term as About, TermParameter,
 };
 
 /// Samples and their distance, s.
@@ -322,6 +322,9 @@ impl ModelFamily for Plant {
     }
     fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
+    }
+    fn generic_term(&self, along: &Coordinate, shape: &Generic) -> Option<String> {
+        Some(format!("{} {}", along.name, matches!(shape, Generic::InTime(_))))
     }
     fn regimes(&self) -> &[Regime] {
         &self.regimes

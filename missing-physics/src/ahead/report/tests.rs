@@ -6,7 +6,7 @@ use crate::ahead::fit::evaluated;
 use crate::ahead::found::Row;
 use crate::ahead::screen::screen;
 use crate::ahead::testing::{BEAT, BENT, NOISE, PUSH, Plant, TONE, TWIN, WAVE};
-use crate::report::Outcome;
+use crate::report::{Outcome, Where};
 use crate::task::Thresholds;
 
 const HIDDEN: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
@@ -117,6 +117,32 @@ fn where_nothing_was_added_the_base_fails_where_the_last_model_does() {
     assert_eq!(nothing.regimes, nothing.regimes_base);
     let something = told(&plant, both(&plant));
     assert_ne!(something.where_it_fails, something.where_base);
+}
+
+#[test]
+fn a_term_that_describes_what_is_left_is_told_where_nothing_explains_it_and_only_along_structure() {
+    let plant = Plant::new(1, &HIDDEN);
+    // A base that swings slowly where the plant does not.
+    let nothing = || Found::of(node(&plant, &[(TONE, &[1.0, 0.2])]));
+    let term = told(&plant, nothing()).generic_term;
+    assert_eq!(term.as_deref(), Some("time true"));
+    // What was found explains it, and where all is explained nothing is left to describe.
+    assert_eq!(told(&plant, both(&plant)).generic_term, None);
+    assert_eq!(told(&plant, Found { complete: true, ..nothing() }).generic_term, None);
+    // The first coordinate along which there is structure, by its name.
+    let settings = Settings::default();
+    let found = nothing();
+    let residual = vec![0.0; plant.target().len()];
+    let place = |coordinate: &str, p_value: f64| {
+        let place = told(&plant, nothing()).where_it_fails.swap_remove(0);
+        Where { coordinate: coordinate.to_owned(), p_value, ..place }
+    };
+    let (family, ahead, brief) = (&plant, &plant, false);
+    let report = Report { family, ahead, settings: &settings, found, brief, stop: &|| false };
+    let told = |places: &[Where]| report.generic_term(places, &residual);
+    assert!(told(&[place("load", 1.0), place("time", 0.0)]).is_some());
+    assert!(told(&[place("load", 0.0), place("time", 0.0)]).is_none());
+    assert!(told(&[place("time", 1.0)]).is_none());
 }
 
 #[test]
