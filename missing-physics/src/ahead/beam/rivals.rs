@@ -209,12 +209,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
         loop {
-            let each = kept.iter().map(|term| {
+            let each = kept.par_iter().map(|term| {
                 let others: Vec<usize> = kept.iter().copied().filter(|t| t != term).collect();
                 let without = if others.is_empty() { free.clone() } else { with(self, &others) };
                 (*term, self.comparison.compare(&without, &beside), without)
             });
-            let least = each.min_by(|a, b| a.1.nats.total_cmp(&b.1.nats));
+            let each: Vec<(usize, Difference, Node)> = each.collect();
+            let least = each.into_iter().min_by(|a, b| a.1.nats.total_cmp(&b.1.nats));
             let idle = |least: &(usize, Difference, Node)| least.1.nats < needed;
             let Some((term, cost, without)) = least.filter(idle) else { return (kept, beside) };
             let from = beside.clone();
