@@ -95,6 +95,7 @@ pub fn said(event: &Event<'_>) -> Option<String> {
         }
         Event::Screening { rung, candidates } => screening(*rung, *candidates),
         Event::Compared { rung, effects, nats } => compared(*rung, effects, *nats),
+        Event::Concluding => "asking what is needed, and what else would do as well".to_owned(),
         Event::Finishing => "looking at what is left".to_owned(),
         _ => return None,
     })

@@ -157,6 +157,7 @@ pub enum Happening {
     BaseFitted { evaluations: usize },
     Screening { rung: usize, candidates: usize },
     Compared { rung: usize, effects: Vec<String>, nats: f64 },
+    Concluding,
     Finishing,
 }
 
@@ -180,6 +181,7 @@ impl Happening {
                 facts.set_item("effects", effects)?;
                 facts.set_item("nats", nats)?;
             }
+            Self::Concluding => facts.set_item("stage", "concluding")?,
             Self::Finishing => facts.set_item("stage", "finishing")?,
         }
         Ok(facts)
@@ -197,6 +199,7 @@ impl Observer for Sends {
             Event::Compared { rung, effects, nats } => {
                 Happening::Compared { rung, effects: effects.to_vec(), nats }
             }
+            Event::Concluding => Happening::Concluding,
             Event::Finishing => Happening::Finishing,
             _ => return,
         };

@@ -149,8 +149,8 @@ def discover(
         As the flags of the command: ``time_limit`` in s, None for no limit; ``thresholds`` by their names in
         docs/decisions.md (``better``, ``chance``, ``beam``, ...); ``bandwidth`` in Hz.
     progress
-        Called while it runs with ``stage`` (``base-fitted``, ``screening``, ``compared``, ``finishing``) and its numbers; or a
-        bar such as ``tqdm.tqdm()``, which is moved on by one at each and told what it is.
+        Called while it runs with ``stage`` (``base-fitted``, ``screening``, ``compared``, ``concluding``,
+        ``finishing``) and its numbers; or a bar such as ``tqdm.tqdm()``, which is moved on by one at each and told what it is.
 
     Returns
     -------

@@ -199,6 +199,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// The same from the best set of those that were grown.
     pub fn finish_grown(mut self, mut climb: Climb, mut best: Node) -> Found {
+        (self.tell)(&Event::Concluding);
         if !self.is_complete(&best) {
             best = self.beside_usual(&mut climb, best);
         }

@@ -25,6 +25,9 @@ pub enum Event<'a> {
         /// Held-out log-likelihood gained, nats.
         nats: f64,
     },
+    /// Sets of effects are known; now each effect is asked whether it is needed, and whether a simpler one or what is no
+    /// effect does as well.
+    Concluding,
     /// A model that a person builds has come this far ([`crate::ahead::ByHand`]).
     Fitted {
         /// Its effects.

@@ -344,6 +344,31 @@ impl Observer for StopAt<'_> {
     }
 }
 
+/// The stages of a search, as they come.
+#[derive(Default)]
+struct Stages(Vec<&'static str>);
+
+impl Observer for Stages {
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.push(match event {
+            Event::BaseFitted { .. } => "base",
+            Event::Screening { .. } | Event::Compared { .. } => "growing",
+            Event::Concluding => "concluding",
+            _ => "finishing",
+        });
+        self.0.dedup();
+    }
+}
+
+#[test]
+fn what_is_told_while_it_runs_is_what_is_done() {
+    let plant = Plant::new(7, &[(WAVE, &[0.05])]);
+    let mut stages = Stages::default();
+    let settings = Settings { thresholds: narrow(), ..settings() };
+    discover(&plant, &settings, &mut stages).unwrap();
+    assert_eq!(stages.0, ["base", "growing", "concluding", "finishing"]);
+}
+
 #[test]
 fn a_stopped_search_says_so_keeps_what_it_has_and_lists_what_was_not_tried() {
     let plant = Plant::new(7, &[(WAVE, &[0.05]), (TONE, &[0.02, 5.0])]);
