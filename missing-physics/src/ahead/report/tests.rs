@@ -244,6 +244,8 @@ fn numbers_that_are_none_do_not_reach_a_file() {
     let told = finite(&decision);
     assert_eq!((told.difference, told.standard_error, told.budget), (0.0, 1.0, 0.0));
     assert_eq!(told.because, Some(Reason::NotFinite));
+    let of_error = finite(&Decision { standard_error: f64::NAN, ..decision });
+    assert_eq!(of_error.standard_error, 0.0);
     assert_eq!(share(f64::NAN, 10.0), -1.0);
     assert_eq!(share(-1e9, 10.0), -1.0);
     assert_eq!(share(f64::INFINITY, 10.0), 1.0);
