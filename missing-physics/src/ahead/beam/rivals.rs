@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::{Climb, STEPS, Search, negative};
+use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
@@ -31,8 +31,8 @@ struct Does {
 }
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The model without effects that something else makes up for, and what that is (nothing where these are other effects); with all of them where a rival does
-    /// something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
+    /// The model without effects that something else makes up for, and what that is (nothing where these are other effects);
+    /// with all of them where a rival does something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
     pub(super) fn instead(
         &mut self,
         climb: &Climb,
@@ -214,8 +214,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 let without = if others.is_empty() { free.clone() } else { with(self, &others) };
                 (*term, self.comparison.compare(&without, &beside), without)
             });
-            let each: Vec<(usize, Difference, Node)> = each.collect();
-            let least = each.into_iter().min_by(|a, b| a.1.nats.total_cmp(&b.1.nats));
+            let costs: Costs = each.collect();
+            let least = costs.into_iter().min_by(|a, b| a.1.nats.total_cmp(&b.1.nats));
             let idle = |least: &(usize, Difference, Node)| least.1.nats < needed;
             let Some((term, cost, without)) = least.filter(idle) else { return (kept, beside) };
             let from = beside.clone();
