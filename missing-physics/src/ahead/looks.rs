@@ -47,46 +47,16 @@ pub fn discover<F: ModelFamily + ?Sized>(
     let there = there.and_then(|OtherReading { family, nats, decided }| {
         Some(Other { reading: Reading::of(family)?, nats, decided })
     });
-    let coloured = here.coloured();
-    let coloured = coloured.as_ref().map(|here| {
-        let there = there.as_ref();
-        (here, there.and_then(|there| Some(Other { reading: there.reading.coloured()?, ..*there })))
-    });
-    let asked = thresholds.in_part(here.whole.asked());
-    let look = |most: usize| {
-        let (here, there) = coloured.as_ref().filter(|_| most > 0 && !stop())?;
-        let thresholds = Thresholds { most, ..run.thresholds };
-        // Of residuals it may bear out the first one.
-        let run = Run { thresholds, all_or_nothing: !here.residuals, ..run };
-        Some(run.begun(here, there.as_ref()).finished())
-    };
-
-    // Two are the fewest that hide each other, and more are seldom all of it.
-    let most = if here.residuals { most } else { most.min(PAIR) };
-    let begun = run.begun(here, there.as_ref());
-    // Where one effect leaves something two may hide each other: the second look tells sooner.
-    let second = if begun.is_complete() || here.residuals { None } else { look(most) };
-    let second = match second {
-        Some(second) if second.is_pair() => return run.told(second.after(begun.decisions())),
-        other => other,
-    };
-    let first = begun.finished();
-    // A wrong reading takes an effect of its own to leave nothing.
-    let doubtful = there.is_some() && first.found.added.len() > 1;
-    if first.found.complete && !doubtful {
-        return run.told(first);
-    }
-    // Beside a complete one only fewer effects count.
-    let fewer = if first.found.complete { first.found.added.len() - 1 } else { most };
-    let second = second.or_else(|| look(fewer.min(most)));
-    match second {
-        Some(second) if second.is_plainer_than(&first, &asked) || first.is_silent_on(&second) => {
-            run.told(second.after(first.found.decisions))
-        }
-        Some(second) if !second.found.stopped => run.told(first),
-        None if !stop() => run.told(first),
-        _ => run.told(first.cut()),
-    }
+    run.looked(here, there.as_ref(), |sought| {
+        let Some(all) = sought.unsearched(&thresholds) else { return run.told(sought) };
+        let there = there.as_ref().and_then(Other::in_full);
+        run.looked(&all, there.as_ref(), |again| {
+            if again.found.stopped && again.found.added.is_empty() {
+                return run.told(sought.cut());
+            }
+            run.told(again.after(sought.found.decisions))
+        })
+    })
 }
 
 /// A recording as it is read: how its input acts between samples.
@@ -103,6 +73,11 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     pub fn of(family: &'a F) -> Option<Self> {
         let (whole, part) = (family.ahead()?, family.ahead_in_part());
         Some(Self { family, whole, part, residuals: false })
+    }
+
+    /// The same, all of it searched.
+    fn in_full(family: &'a F) -> Option<Self> {
+        Some(Self { family, whole: family.ahead()?, part: None, residuals: false })
     }
 
     /// That of a family that only gives residuals, whose noise the residual of `base` shows.
@@ -144,6 +119,17 @@ struct Other<'a, F: ModelFamily + ?Sized> {
     /// By how many nats the simplest model prefers the first, and whether that decides until effects say otherwise.
     nats: f64,
     decided: bool,
+}
+
+impl<F: ModelFamily + ?Sized> Other<'_, F> {
+    fn coloured(&self) -> Option<Other<'_, F>> {
+        Some(Other { reading: self.reading.coloured()?, ..*self })
+    }
+
+    /// The same, all of it searched.
+    fn in_full(&self) -> Option<Other<'_, F>> {
+        Some(Other { reading: Reading::in_full(self.reading.family)?, ..*self })
+    }
 }
 
 /// A search in one reading that has looked at sets of one effect.
@@ -262,6 +248,9 @@ const PAIR: usize = 2;
 /// To bring a model to all of the recording takes at least so many times as long as to find its setting there.
 const LEAST_ASKED: u32 = 4;
 
+/// Share of a recording that a search must have seen for all of it to be searched.
+const LEAST_SHARE: f64 = 0.25;
+
 /// What was found in a reading.
 struct Sought<'a, F: ModelFamily + ?Sized> {
     reading: &'a Reading<'a, F>,
@@ -270,12 +259,23 @@ struct Sought<'a, F: ModelFamily + ?Sized> {
     on_part: bool,
 }
 
-impl<F: ModelFamily + ?Sized> Sought<'_, F> {
+impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
     /// The same without names that are not the cause.
     fn judged(mut self, thresholds: &Thresholds) -> Self {
         let Reading { family, .. } = self.reading;
         self.found.judge(*family, self.reading.asked(self.on_part), thresholds);
         self
+    }
+
+    /// All of a recording, where a search on a part of it names nothing although something is missing: what shows in few places
+    /// may not be among the pieces.
+    fn unsearched(&self, thresholds: &Thresholds) -> Option<Reading<'a, F>> {
+        let Reading { family, whole, part, .. } = self.reading;
+        part.as_deref().filter(|part| part.share() >= LEAST_SHARE && !self.on_part)?;
+        let mut found = self.found.clone();
+        found.judge_force(*family, &**whole, thresholds);
+        let silent = found.added.is_empty() && !found.complete && !found.stopped;
+        silent.then(|| Reading::in_full(*family)).flatten()
     }
 
     /// Whether so few effects leave nothing that no other look can do with less.
@@ -338,6 +338,55 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
+    /// What one look finds, or two.
+    fn looked<F: ModelFamily + ?Sized, R>(
+        &self,
+        here: &Reading<'_, F>,
+        there: Option<&Other<'_, F>>,
+        tell: impl FnOnce(Sought<'_, F>) -> R,
+    ) -> R {
+        let (most, stop) = (self.thresholds.most, self.stop);
+        let coloured = here.coloured();
+        let coloured = coloured.as_ref().map(|here| (here, there.and_then(Other::coloured)));
+        let asked = self.thresholds.in_part(here.whole.asked());
+        let look = |most: usize| {
+            let (here, there) = coloured.as_ref().filter(|_| most > 0 && !stop())?;
+            let thresholds = Thresholds { most, ..self.thresholds };
+            // Of residuals it may bear out the first one.
+            let run = Run { thresholds, all_or_nothing: !here.residuals, ..*self };
+            Some(run.begun(here, there.as_ref()).finished())
+        };
+
+        // Two are the fewest that hide each other, and more are seldom all of it.
+        let most = if here.residuals { most } else { most.min(PAIR) };
+        let begun = self.begun(here, there);
+        // Where one effect leaves something two may hide each other: the second look tells sooner.
+        let second = if begun.is_complete() || here.residuals { None } else { look(most) };
+        let second = match second {
+            Some(second) if second.is_pair() => return tell(second.after(begun.decisions())),
+            other => other,
+        };
+        let first = begun.finished();
+        // A wrong reading takes an effect of its own to leave nothing.
+        let doubtful = there.is_some() && first.found.added.len() > 1;
+        if first.found.complete && !doubtful {
+            return tell(first);
+        }
+        // Beside a complete one only fewer effects count.
+        let fewer = if first.found.complete { first.found.added.len() - 1 } else { most };
+        let second = second.or_else(|| look(fewer.min(most)));
+        match second {
+            Some(second)
+                if second.is_plainer_than(&first, &asked) || first.is_silent_on(&second) =>
+            {
+                tell(second.after(first.found.decisions))
+            }
+            Some(second) if !second.found.stopped => tell(first),
+            None if !stop() => tell(first),
+            _ => tell(first.cut()),
+        }
+    }
+
     /// A search in either reading that has looked at sets of one effect.
     fn begun<F: ModelFamily + ?Sized>(
         &self,

@@ -103,6 +103,8 @@ pub struct Plant {
     pub leaps: Vec<f64>,
     /// What stands for a few pieces of the recording.
     pub part: Option<Box<Plant>>,
+    /// What is searched in its place, and as how much of it.
+    pub pieces: Option<(Box<Plant>, f64)>,
     /// The force that every model lacks.
     pub lacks: Option<Series>,
 }
@@ -192,6 +194,7 @@ impl Plant {
             related: None,
             leaps: Vec::new(),
             part: None,
+            pieces: None,
             lacks: None,
         }
     }
@@ -282,7 +285,7 @@ impl Ahead for Plant {
         related.map(swapped).into_iter().collect()
     }
     fn part(&self) -> Option<Box<dyn Ahead + '_>> {
-        self.part.as_ref().map(|part| Box::new(Borrowed(part)) as Box<dyn Ahead>)
+        self.part.as_ref().map(|part| Box::new(Borrowed(part, 1.0)) as Box<dyn Ahead>)
     }
     fn variations(&self, model: &Fitted) -> Vec<Fitted> {
         let Some(place) = model.terms.iter().position(|term| *term == TONE) else {
@@ -351,12 +354,16 @@ impl ModelFamily for Plant {
         term != RIVAL && model.terms.iter().all(|t| main(*t) != main(term))
     }
     fn ahead(&self) -> Option<Box<dyn Ahead + '_>> {
-        Some(Box::new(Borrowed(self)))
+        Some(Box::new(Borrowed(self, 1.0)))
+    }
+    fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
+        let (pieces, share) = self.pieces.as_ref()?;
+        Some(Box::new(Borrowed(pieces, *share)))
     }
 }
 
-/// The plant as the box that the engine asks for.
-struct Borrowed<'a>(&'a Plant);
+/// The plant as the box that the engine asks for, and as how much of the recording.
+struct Borrowed<'a>(&'a Plant, f64);
 
 impl Ahead for Borrowed<'_> {
     fn settings(&self) -> usize {
@@ -373,6 +380,9 @@ impl Ahead for Borrowed<'_> {
     }
     fn instants(&self) -> &[(f64, usize)] {
         self.0.instants()
+    }
+    fn share(&self) -> f64 {
+        self.1
     }
     fn trials(&self, model: &Fitted, term: usize) -> Vec<Trial> {
         Ahead::trials(self.0, model, term)

@@ -78,18 +78,25 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
     }
 
-    /// The model without a term, refitted.
+    /// The model without a term, refitted; what stood in the place of a term of the base leaves it to that one.
     pub(super) fn without(&self, climb: &Climb, node: &Node, term: usize) -> Node {
         // A rung below may have it in another form.
-        let form = node.model.terms.iter().find(|t| self.main(**t) == self.main(term));
-        let model = node.model.without(self.family, *form.unwrap_or(&term));
-        if Self::added(&climb.base, node).len() == 1 {
+        let is = |t: &usize| self.main(*t) == self.main(term);
+        let form = node.model.terms.iter().copied().find(is);
+        let most = Self::added(&climb.base, node).len().saturating_sub(1);
+        if most == 0 {
             return climb.base.clone();
+        }
+        let mut model = node.model.without(self.family, form.unwrap_or(term));
+        let base = &climb.base.model;
+        if let Some(place) = base.terms.iter().position(is) {
+            model = model.with(base.terms[place], &base.values[base.range(self.family, place)]);
         }
         let mut best = self.refit(&model, node.setting, STEPS.1);
         let key = self.key(&best);
-        for other in climb.nodes.iter().flatten().filter(|other| self.key(other) == key) {
-            if self.comparison.compare(&best, other).nats > 0.0 {
+        let others = climb.nodes.iter().flatten();
+        for other in others.filter(|other| Self::added(&climb.base, other).len() == most) {
+            if self.key(other) == key && self.comparison.compare(&best, other).nats > 0.0 {
                 best = other.clone();
             }
         }
@@ -115,15 +122,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let needed = |(term, cost, _): &(usize, Difference, Node)| {
             cost.nats - if self.family.is_usual(*term) { clear } else { 0.0 }
         };
+        // Forms may have changed since the costs were taken, one into that of the base.
+        let new = last.added_to(&base);
+        let now = |term: usize| new.iter().copied().find(|t| self.main(*t) == self.main(term));
         let mut told: Vec<_> = costs.into_iter().zip(p_values).collect();
+        told.retain(|((term, ..), _)| now(*term).is_some());
         told.sort_by(|a, b| needed(&b.0).total_cmp(&needed(&a.0)));
         let (costs, p_values): (Costs, Vec<f64>) = told.into_iter().unzip();
-        // Forms may have changed since the costs were taken.
-        let order: Vec<usize> = costs.iter().map(|(term, ..)| self.main(*term)).collect();
-        let mut added: Vec<usize> = Vec::new();
-        for main in &order {
-            added.extend(last.effects(self.family).iter().filter(|t| self.main(**t) == *main));
-        }
+        let added: Vec<usize> = costs.iter().filter_map(|(term, ..)| now(*term)).collect();
         let mut rungs = vec![last.clone()];
         for term in added.iter().skip(1).rev() {
             let Some(above) = rungs.last() else { break };

@@ -181,6 +181,21 @@ fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() 
 }
 
 #[test]
+fn what_pieces_of_the_recording_do_not_show_is_looked_for_in_all_of_it() {
+    let named = |hidden: &[(usize, &[f64])], share: f64| {
+        let mut plant = Plant::new(5, hidden);
+        plant.pieces = Some((Box::new(Plant::new(6, &[])), share));
+        let discovery = discover(&plant, &settings(), &mut ()).unwrap();
+        (discovery.verdict, discovery.added)
+    };
+    let wave: &[(usize, &[f64])] = &[(WAVE, &[0.05])];
+    assert_eq!(named(wave, 0.3), (Verdict::EffectsFound, vec!["wave".to_owned()]));
+    // Of a very long recording it would take too long.
+    assert_eq!(named(wave, 0.2), (Verdict::Unexplained, Vec::new()));
+    assert_eq!(named(&[], 0.3), (Verdict::NothingMissing, Vec::new()));
+}
+
+#[test]
 fn effects_that_a_rival_makes_up_for_are_not_named() {
     let plant = Plant::new(11, &[(WAVE, &[0.05]), (BEAT, &[-0.02]), (TONE, &[0.06, 5.0])]);
     let without_tone = Plant::new(11, &[(WAVE, &[0.05]), (BEAT, &[-0.02])]);

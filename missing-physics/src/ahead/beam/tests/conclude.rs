@@ -73,6 +73,28 @@ fn an_effect_with_which_the_error_does_not_fall_beside_others_goes_whatever_it_g
 }
 
 #[test]
+fn another_form_of_what_the_base_has_leaves_its_place_to_it_and_is_no_effect_then() {
+    let plant = Plant::new(3, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
+    let based = |sizes| Climb { base: node(&plant, &[(WAVE, &[0.05])]), ..climb(&plant, sizes) };
+    let bent = node(&plant, &[(BENT, &[0.05, 1e-4]), (BEAT, &[0.05])]);
+    // Of the same effects, so that it must not be taken for what is left.
+    let mut search = search(&plant, narrow());
+    let climb = based(vec![vec![], vec![bent.clone()]]);
+    let (kept, costs) = search.prune(&climb, bent.clone());
+    assert_eq!(kept.effects(&plant), [BEAT, WAVE]);
+    assert_eq!(costs.iter().map(|(term, ..)| *term).collect::<Vec<_>>(), [BEAT]);
+    // Where it went to that of the base after the costs were taken.
+    let costs = [BENT, BEAT].map(|term| {
+        let without = search.without(&climb, &bent, term);
+        (term, search.comparison.compare(&without, &bent), without)
+    });
+    let beside = Screened::default();
+    let found = search.conclude(based(vec![]), &kept, (costs.to_vec(), 0.0), beside, None);
+    assert_eq!(found.added, [BEAT]);
+    assert_eq!((found.rungs.len(), found.costs.len(), found.p_values.len()), (1, 1, 1));
+}
+
+#[test]
 fn a_single_effect_is_not_dropped_for_what_it_gains() {
     // Whether it is enough was asked where its size was.
     let plant = Plant::new(3, &[]);
