@@ -39,6 +39,10 @@ pub fn remark(remark: &Remark) -> String {
             "Of {samples} samples {looked_at} were looked at, in {pieces} pieces spread over the recording: what happens \
              only between them was not looked for."
         ),
+        Remark::SearchedInPieces { share } => format!(
+            "Nothing was named on pieces that are {} of what was looked at; there was no time to search all of it.",
+            percent(*share)
+        ),
         Remark::SecondLookCut => {
             "Time ran out before it was known whether other effects, which hide each other, do as much."
                 .to_owned()

@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::astray::elsewhere;
 use super::beam::{Climb, Search, Tell};
@@ -48,11 +48,15 @@ pub fn discover<F: ModelFamily + ?Sized>(
         Some(Other { reading: Reading::of(family)?, nats, decided })
     });
     run.looked(here, there.as_ref(), |sought| {
-        let Some(all) = sought.unsearched(&thresholds) else { return run.told(sought) };
+        let Some((all, share)) = sought.unsearched(&thresholds) else { return run.told(sought) };
+        let in_pieces = Remark::SearchedInPieces { share };
+        if !leaves_time(settings.time_limit, started.elapsed(), share) {
+            return run.told(sought.but(in_pieces));
+        }
         let there = there.as_ref().and_then(Other::in_full);
         run.looked(&all, there.as_ref(), |again| {
             if again.found.stopped && again.found.added.is_empty() {
-                return run.told(sought.cut());
+                return run.told(sought.cut(in_pieces));
             }
             run.told(again.after(sought.found.decisions))
         })
@@ -267,15 +271,15 @@ impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
         self
     }
 
-    /// All of a recording, where a search on a part of it names nothing although something is missing: what shows in few places
-    /// may not be among the pieces.
-    fn unsearched(&self, thresholds: &Thresholds) -> Option<Reading<'a, F>> {
+    /// All of a recording, where a search on a part of it names nothing although something is missing, and that part as a share
+    /// of it: what shows in few places may not be among the pieces.
+    fn unsearched(&self, thresholds: &Thresholds) -> Option<(Reading<'a, F>, f64)> {
         let Reading { family, whole, part, .. } = self.reading;
-        part.as_deref().filter(|part| part.share() >= LEAST_SHARE && !self.on_part)?;
+        let share = part.as_ref().filter(|_| !self.on_part)?.share();
         let mut found = self.found.clone();
         found.judge_force(*family, &**whole, thresholds);
         let silent = found.added.is_empty() && !found.complete && !found.stopped;
-        silent.then(|| Reading::in_full(*family)).flatten()
+        Some((Reading::in_full(*family)?, share)).filter(|_| silent && share >= LEAST_SHARE)
     }
 
     /// Whether so few effects leave nothing that no other look can do with less.
@@ -315,11 +319,16 @@ impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
         self
     }
 
-    /// The same where time ran out before the second look was over.
-    fn cut(mut self) -> Self {
-        self.found.stopped = true;
-        self.found.remarks.push(Remark::SecondLookCut);
+    /// The same with a remark.
+    fn but(mut self, remark: Remark) -> Self {
+        self.found.remarks.push(remark);
         self
+    }
+
+    /// The same where time ran out before what might have told better was over.
+    fn cut(mut self, remark: Remark) -> Self {
+        self.found.stopped = true;
+        self.but(remark)
     }
 }
 
@@ -383,7 +392,7 @@ impl<'a> Run<'a> {
             }
             Some(second) if !second.found.stopped => tell(first),
             None if !stop() => tell(first),
-            _ => tell(first.cut()),
+            _ => tell(first.cut(Remark::SecondLookCut)),
         }
     }
 
@@ -470,6 +479,11 @@ impl<'a> Run<'a> {
     }
 }
 
+/// Whether all of a recording can be searched within a limit after a search of this share of it took so long.
+fn leaves_time(limit: Option<Duration>, took: Duration, share: f64) -> bool {
+    limit.is_none_or(|limit| took + took.div_f64(share) <= limit)
+}
+
 /// Whether a search was asked to end, or its time is up.
 fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
     let asked = settings.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
@@ -547,7 +561,7 @@ mod tests {
     fn a_cut_second_look_is_told_and_what_was_compared_before_stands_first() {
         let plant = plant();
         let reading = Reading::of(&plant).unwrap();
-        let cut = sought(&reading, &plant, 1, false).cut();
+        let cut = sought(&reading, &plant, 1, false).cut(Remark::SecondLookCut);
         assert!(cut.found.stopped);
         assert_eq!(cut.found.remarks, [Remark::SecondLookCut]);
         let decision = |rung| Decision {
@@ -584,6 +598,15 @@ mod tests {
     }
 
     #[test]
+    fn all_of_a_recording_is_searched_where_the_limit_leaves_as_much_longer_as_there_is_more() {
+        let leaves = |limit: Option<u64>, took, share| {
+            leaves_time(limit.map(Duration::from_secs), Duration::from_secs(took), share)
+        };
+        assert!(leaves(None, 100, 0.25) && leaves(Some(60), 12, 0.25));
+        assert!(!leaves(Some(60), 13, 0.25) && leaves(Some(60), 13, 0.5));
+    }
+
+    #[test]
     fn a_search_is_over_when_it_was_asked_to_end_or_its_time_is_up() {
         let started = Instant::now();
         assert!(!is_over(&Settings::default(), started));
@@ -592,7 +615,7 @@ mod tests {
         assert!(!is_over(&asked, started));
         flag.store(true, Ordering::Relaxed);
         assert!(is_over(&asked, started));
-        let time_limit = Some(std::time::Duration::ZERO);
+        let time_limit = Some(Duration::ZERO);
         assert!(is_over(&Settings { time_limit, ..Settings::default() }, started));
     }
 }

@@ -75,6 +75,11 @@ pub enum Remark {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         because: Option<NoCause>,
     },
+    /// Nothing was named, and there was no time to search more than pieces of the recording.
+    SearchedInPieces {
+        /// The pieces as a share of it.
+        share: f64,
+    },
     /// Time ran out before it was known whether other effects, which hide each other, do as much.
     SecondLookCut,
     /// Time ran out before it was known whether fewer effects do in the other reading of the input.
