@@ -294,16 +294,16 @@ impl Found {
         self.taken_back(family, ahead, thresholds, (lacking, no_cause));
     }
 
-    /// Takes all names back where the base model hardly errs more than the sensors, and some of the force that it lacks is
-    /// still lacking beyond doubt: where errors tell so little, what is there explains that force, and what only imitates it
-    /// does so in part. What every system has is asked nothing.
+    /// Takes all names back where the last model hardly errs more than the sensors, and some of the force that the base lacks
+    /// is still lacking beyond doubt: where errors tell so little, what is there explains that force, and what only imitates
+    /// it does so in part. What every system has is asked nothing.
     pub fn judge_force<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
-        let within = self.base.scale / ahead.budget() <= thresholds.complete;
+        let within = self.top().0.scale / ahead.budget() <= thresholds.complete;
         if !within || self.added.iter().all(|term| family.is_usual(*term)) {
             return;
         }
