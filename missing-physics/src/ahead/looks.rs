@@ -4,16 +4,15 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
+use super::as_read::{Other, Reading};
 use super::astray::elsewhere;
 use super::beam::{Climb, Search, Tell};
-use super::compare::Comparison;
-use super::fit::{Fitter, best_setting, evaluated};
-use super::found::{Found, IN_FULL};
+use super::fit::{Fitter, best_setting};
+use super::found::Found;
 use super::node::Node;
-use super::refused::refused;
+use super::reading;
 use super::report::Report;
-use super::residuals::Residuals;
-use super::{Ahead, reading};
+use super::sought::{PAIR, Sought};
 use crate::family::{Fitted, ModelFamily, OtherReading};
 use crate::fit;
 use crate::report::{Decision, Discovery, Remark};
@@ -63,79 +62,6 @@ pub fn discover<F: ModelFamily + ?Sized>(
     })
 }
 
-/// A recording as it is read: how its input acts between samples.
-pub struct Reading<'a, F: ModelFamily + ?Sized> {
-    family: &'a F,
-    whole: Box<dyn Ahead + 'a>,
-    part: Option<Box<dyn Ahead + 'a>>,
-    /// Whether the errors are residuals.
-    residuals: bool,
-}
-
-impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
-    /// That of a family that predicts one sample ahead.
-    pub fn of(family: &'a F) -> Option<Self> {
-        let (whole, part) = (family.ahead()?, family.ahead_in_part());
-        Some(Self { family, whole, part, residuals: false })
-    }
-
-    /// The same, all of it searched.
-    fn in_full(family: &'a F) -> Option<Self> {
-        Some(Self { family, whole: family.ahead()?, part: None, residuals: false })
-    }
-
-    /// That of a family that only gives residuals, whose noise the residual of `base` shows.
-    pub fn of_residuals(family: &'a F, base: &Fitted) -> Self {
-        Self { family, whole: Box::new(Residuals::new(family, base)), part: None, residuals: true }
-    }
-
-    /// What is searched.
-    fn searched(&self) -> &dyn Ahead {
-        self.asked(true)
-    }
-
-    /// All of it, or what is searched.
-    fn asked(&self, on_part: bool) -> &dyn Ahead {
-        self.part.as_deref().filter(|_| on_part).unwrap_or(&*self.whole)
-    }
-
-    /// The same, its errors judged by what an autoregression leaves of them.
-    fn coloured(&self) -> Option<Reading<'_, F>> {
-        let part = self.part.as_ref().map(|part| part.coloured());
-        let whole = self.whole.coloured()?;
-        let part = part.flatten();
-        Some(Reading { family: self.family, whole, part, residuals: self.residuals })
-    }
-
-    /// Whether residuals as they are fall by what was found in whitened ones: noise of a colour that nobody stated leaves
-    /// no model complete, and hides in them what whitened ones show.
-    fn bears_out(&self, found: &Found) -> bool {
-        let Some(top) = found.rungs.last().filter(|_| self.residuals) else { return false };
-        let as_it_is = |node: &Node| evaluated(&*self.whole, node.model.clone(), 0);
-        let comparison = Comparison::new(self.family, &*self.whole);
-        comparison.compare(&as_it_is(&found.base), &as_it_is(top)).nats > 0.0
-    }
-}
-
-/// The other way to read a recording.
-struct Other<'a, F: ModelFamily + ?Sized> {
-    reading: Reading<'a, F>,
-    /// By how many nats the simplest model prefers the first, and whether that decides until effects say otherwise.
-    nats: f64,
-    decided: bool,
-}
-
-impl<F: ModelFamily + ?Sized> Other<'_, F> {
-    fn coloured(&self) -> Option<Other<'_, F>> {
-        Some(Other { reading: self.reading.coloured()?, ..*self })
-    }
-
-    /// The same, all of it searched.
-    fn in_full(&self) -> Option<Other<'_, F>> {
-        Some(Other { reading: Reading::in_full(self.reading.family)?, ..*self })
-    }
-}
-
 /// A search in one reading that has looked at sets of one effect.
 struct Pursuit<'a, F: ModelFamily + ?Sized> {
     reading: &'a Reading<'a, F>,
@@ -155,6 +81,9 @@ impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
         effects > 0 && !self.is_complete() && !stop() && reading::is_better(top, &fitter)
     }
 }
+
+/// To bring a model to all of the recording takes at least so many times as long as to find its setting there.
+const LEAST_ASKED: u32 = 4;
 
 /// The same in each reading that the recording allows.
 struct Begun<'a, F: ModelFamily + ?Sized> {
@@ -244,91 +173,6 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
             return (other, there);
         }
         (first.reading, found)
-    }
-}
-
-/// Effects that a second look goes up to.
-const PAIR: usize = 2;
-/// To bring a model to all of the recording takes at least so many times as long as to find its setting there.
-const LEAST_ASKED: u32 = 4;
-
-/// Share of a recording that a search must have seen for all of it to be searched.
-const LEAST_SHARE: f64 = 0.25;
-
-/// What was found in a reading.
-struct Sought<'a, F: ModelFamily + ?Sized> {
-    reading: &'a Reading<'a, F>,
-    found: Found,
-    /// Whether it was not asked of all of the recording.
-    on_part: bool,
-}
-
-impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
-    /// The same without names that are not the cause.
-    fn judged(mut self, thresholds: &Thresholds) -> Self {
-        let Reading { family, .. } = self.reading;
-        self.found.judge(*family, self.reading.asked(self.on_part), thresholds);
-        self
-    }
-
-    /// All of a recording, where a search on a part of it names nothing although something is missing, and that part as a share
-    /// of it: what shows in few places may not be among the pieces.
-    fn unsearched(&self, thresholds: &Thresholds) -> Option<(Reading<'a, F>, f64)> {
-        let Reading { family, whole, part, .. } = self.reading;
-        let share = part.as_ref().filter(|_| !self.on_part)?.share();
-        let mut found = self.found.clone();
-        found.judge_force(*family, &**whole, thresholds);
-        let silent = found.added.is_empty() && !found.complete && !found.stopped;
-        Some((Reading::in_full(*family)?, share)).filter(|_| silent && share >= LEAST_SHARE)
-    }
-
-    /// Whether so few effects leave nothing that no other look can do with less.
-    fn is_pair(&self) -> bool {
-        self.found.complete && self.found.added.len() <= PAIR
-    }
-
-    /// Whether it leaves nothing where the other does, or does so with fewer effects that do as much.
-    fn is_plainer_than(&self, other: &Self, thresholds: &Thresholds) -> bool {
-        let fewer = self.found.added.len() < other.found.added.len();
-        self.found.complete
-            && (!other.found.complete || fewer && !self.misses(&other.found, thresholds))
-    }
-
-    /// Whether what was found elsewhere does more here than what was found here.
-    fn misses(&self, other: &Found, thresholds: &Thresholds) -> bool {
-        let Reading { family, .. } = *self.reading;
-        let ahead = self.reading.asked(self.on_part);
-        let model = other.top().0.model.clone().within(family);
-        let setting = best_setting(ahead, &model);
-        let other = Fitter::new(family, ahead).refit(model, setting, IN_FULL);
-        let compare = |from, to| Comparison::new(family, ahead).compare(from, to).nats;
-        let share = if self.on_part { ahead.share() } else { 1.0 };
-        let clear = thresholds.in_part(share).clear(compare(&self.found.base, &other));
-        compare(self.found.top().0, &other) > clear
-            && refused(family, ahead, &self.found.base, &other).is_none()
-    }
-
-    /// Whether it names nothing, and bears out what the other look found.
-    fn is_silent_on(&self, other: &Self) -> bool {
-        self.found.added.is_empty() && self.reading.bears_out(&other.found)
-    }
-
-    /// The same with what was compared before.
-    fn after(mut self, decisions: Vec<Decision>) -> Self {
-        self.found.decisions.splice(0..0, decisions);
-        self
-    }
-
-    /// The same with a remark.
-    fn but(mut self, remark: Remark) -> Self {
-        self.found.remarks.push(remark);
-        self
-    }
-
-    /// The same where time ran out before what might have told better was over.
-    fn cut(mut self, remark: Remark) -> Self {
-        self.found.stopped = true;
-        self.but(remark)
     }
 }
 
@@ -493,109 +337,6 @@ fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ahead::testing::{BEAT, Plant, WAVE};
-
-    fn plant() -> Plant {
-        Plant::new(1, &[(WAVE, &[0.05])])
-    }
-
-    /// A result with so many effects.
-    fn sought<'a>(
-        reading: &'a Reading<'a, Plant>,
-        plant: &Plant,
-        effects: usize,
-        complete: bool,
-    ) -> Sought<'a, Plant> {
-        let base = Fitter::new(plant, plant).refit(Plant::model(&[]), 0, IN_FULL);
-        let found = Found { added: vec![WAVE; effects], complete, ..Found::of(base) };
-        Sought { reading, found, on_part: false }
-    }
-
-    #[test]
-    fn what_leaves_nothing_with_fewer_effects_is_plainer_and_what_leaves_something_never_is() {
-        let plant = plant();
-        let reading = Reading::of(&plant).unwrap();
-        let of = |effects, complete| sought(&reading, &plant, effects, complete);
-        let is_plainer = |effects, complete, other: &Sought<'_, Plant>| {
-            of(effects, complete).is_plainer_than(other, &Thresholds::default())
-        };
-        assert!(is_plainer(1, true, &of(2, true)));
-        assert!(is_plainer(3, true, &of(1, false)));
-        assert!(!is_plainer(2, true, &of(2, true)));
-        assert!(!is_plainer(1, false, &of(2, false)));
-    }
-
-    #[test]
-    fn a_look_that_misses_what_another_found_is_not_plainer() {
-        let plant = plant();
-        let reading = Reading::of(&plant).unwrap();
-        let other = |size: f64| {
-            let model = Plant::model(&[(WAVE, &[size]), (BEAT, &[1e-3])]);
-            let mut other = sought(&reading, &plant, 2, true);
-            other.found.rungs = vec![evaluated(&plant, model, 0)];
-            other
-        };
-        let is_plainer = |first: &Sought<'_, Plant>, wave: &[f64]| {
-            let mut second = sought(&reading, &plant, wave.len(), true);
-            let nodes = wave.iter().map(|size| Plant::model(&[(WAVE, &[*size])]));
-            second.found.rungs = nodes.map(|model| evaluated(&plant, model, 0)).collect();
-            second.is_plainer_than(first, &Thresholds::default())
-        };
-        // A wave is there and no beat.
-        assert!(is_plainer(&other(0.05), &[0.05]));
-        assert!(!is_plainer(&other(0.05), &[]));
-        // What was found elsewhere is asked at its best here.
-        assert!(!is_plainer(&other(0.01), &[]));
-    }
-
-    #[test]
-    fn two_effects_that_leave_nothing_are_a_pair_and_three_are_none() {
-        let plant = plant();
-        let reading = Reading::of(&plant).unwrap();
-        let is_pair = |effects, complete| sought(&reading, &plant, effects, complete).is_pair();
-        assert!(is_pair(2, true) && is_pair(0, true));
-        assert!(!is_pair(3, true) && !is_pair(2, false));
-    }
-
-    #[test]
-    fn a_cut_second_look_is_told_and_what_was_compared_before_stands_first() {
-        let plant = plant();
-        let reading = Reading::of(&plant).unwrap();
-        let cut = sought(&reading, &plant, 1, false).cut(Remark::SecondLookCut);
-        assert!(cut.found.stopped);
-        assert_eq!(cut.found.remarks, [Remark::SecondLookCut]);
-        let decision = |rung| Decision {
-            rung,
-            candidate: Vec::new(),
-            compared_with: Vec::new(),
-            difference: 0.0,
-            standard_error: 0.0,
-            budget: 1.0,
-            outcome: crate::report::Outcome::TooLittle,
-            because: None,
-        };
-        let mut later = sought(&reading, &plant, 1, true);
-        later.found.decisions = vec![decision(2)];
-        let all = later.after(vec![decision(1)]).found.decisions;
-        assert_eq!(all.iter().map(|d| d.rung).collect::<Vec<_>>(), [1, 2]);
-    }
-
-    #[test]
-    fn a_family_that_predicts_bears_nothing_out_for_residuals() {
-        let plant = plant();
-        let reading = Reading::of(&plant).unwrap();
-        let silent = sought(&reading, &plant, 0, false);
-        let mut other = sought(&reading, &plant, 1, true);
-        other.found.rungs = vec![evaluated(&plant, Plant::model(&[(WAVE, &[0.05])]), 0)];
-        assert!(!silent.is_silent_on(&other));
-        // The same errors, as those of a family that only gives residuals.
-        let residuals = Reading { residuals: true, ..Reading::of(&plant).unwrap() };
-        assert!(sought(&residuals, &plant, 0, false).is_silent_on(&other));
-        assert!(!sought(&residuals, &plant, 1, false).is_silent_on(&other));
-        // What changes nothing lowers nothing.
-        other.found.rungs = vec![evaluated(&plant, Plant::model(&[]), 0)];
-        assert!(!sought(&residuals, &plant, 0, false).is_silent_on(&other));
-    }
 
     #[test]
     fn all_of_a_recording_is_searched_where_the_limit_leaves_as_much_longer_as_there_is_more() {

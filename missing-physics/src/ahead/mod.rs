@@ -5,6 +5,7 @@
 //! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects. A family
 //! that says at once what a whole recording should be is seen through its [`Residuals`].
 
+mod as_read;
 mod astray;
 pub mod autoregression;
 mod beam;
@@ -24,13 +25,15 @@ mod report;
 mod residuals;
 mod scales;
 pub mod screen;
+mod sought;
 pub mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod whitening;
 
+pub use as_read::Reading;
 pub use beam::ByHand;
-pub use looks::{Reading, discover};
+pub use looks::discover;
 pub use residuals::Residuals;
 
 pub use crate::family::{Ahead, Columns, Rival, Trial, trials};
