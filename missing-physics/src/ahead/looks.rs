@@ -1,4 +1,4 @@
-//! A discovery: one look at a recording or two, each in one reading of it or two.
+//! A discovery: one look at a recording or two, each in one reading of it or two, and where its pieces name nothing the same on all of it.
 
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
