@@ -35,10 +35,15 @@ impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
     pub(super) fn unsearched(&self, thresholds: &Thresholds) -> Option<(Reading<'a, F>, f64)> {
         let Reading { family, whole, part, .. } = self.reading;
         let share = part.as_ref().filter(|_| !self.on_part)?.share();
+        if share < LEAST_SHARE || self.found.stopped {
+            return None;
+        }
         let mut found = self.found.clone();
         found.judge_force(*family, &**whole, thresholds);
-        let silent = found.added.is_empty() && !found.complete && !found.stopped;
-        Some((Reading::in_full(*family)?, share)).filter(|_| silent && share >= LEAST_SHARE)
+        if found.complete || !found.added.is_empty() {
+            return None;
+        }
+        Some((Reading::in_full(*family)?, share))
     }
 
     /// Whether so few effects leave nothing that no other look can do with less.

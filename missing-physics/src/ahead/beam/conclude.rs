@@ -83,8 +83,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         // A rung below may have it in another form.
         let is = |t: &usize| self.main(*t) == self.main(term);
         let form = node.model.terms.iter().copied().find(is);
-        let most = Self::added(&climb.base, node).len().saturating_sub(1);
-        if most == 0 {
+        let left = Self::added(&climb.base, node).len().saturating_sub(1);
+        if left == 0 {
             return climb.base.clone();
         }
         let mut model = node.model.without(self.family, form.unwrap_or(term));
@@ -94,9 +94,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         let mut best = self.refit(&model, node.setting, STEPS.1);
         let key = self.key(&best);
-        let others = climb.nodes.iter().flatten();
-        for other in others.filter(|other| Self::added(&climb.base, other).len() == most) {
-            if self.key(other) == key && self.comparison.compare(&best, other).nats > 0.0 {
+        // The effects alone do not tell: another form of what the base has is added, too.
+        let is_same =
+            |other: &&Node| Self::added(&climb.base, other).len() == left && self.key(other) == key;
+        for other in climb.nodes.iter().flatten().filter(is_same) {
+            if self.comparison.compare(&best, other).nats > 0.0 {
                 best = other.clone();
             }
         }
