@@ -14,10 +14,10 @@ use missing_physics::report::Course;
 pub use gain::GainOverTime;
 pub use wave::ForceWave;
 
-/// Knots over the recording or the stroke; straight between them, 0 at the first one, so that nothing competes with
-/// `coulomb` or `offset`.
+/// Knots over the recording or the stroke; straight between them. All are free: a base need have no `offset` that a course
+/// could begin from.
 const KNOTS: usize = 24;
-const FREE: usize = KNOTS - 1;
+const GAPS: usize = KNOTS - 1;
 
 /// A friction level over time.
 #[derive(Clone, Copy, Debug)]
@@ -83,24 +83,24 @@ fn is_constant(effect: &dyn Effect) -> bool {
 /// Share of the recording over which a step rises: a fit has to feel where it is.
 const RISE: f64 = 0.005;
 
-const NAMES: [&str; FREE] = [
-    "k_1", "k_2", "k_3", "k_4", "k_5", "k_6", "k_7", "k_8", "k_9", "k_10", "k_11", "k_12", "k_13",
-    "k_14", "k_15", "k_16", "k_17", "k_18", "k_19", "k_20", "k_21", "k_22", "k_23",
+const NAMES: [&str; KNOTS] = [
+    "k_0", "k_1", "k_2", "k_3", "k_4", "k_5", "k_6", "k_7", "k_8", "k_9", "k_10", "k_11", "k_12",
+    "k_13", "k_14", "k_15", "k_16", "k_17", "k_18", "k_19", "k_20", "k_21", "k_22", "k_23",
 ];
 
 const fn moment(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
     Parameter::fixed(name, meaning, Quantity::Time, (-1e9, 1e9), default)
 }
 
-/// Free values beyond those at the begin of `span`.
-const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 1] {
-    let mut all = [span[0]; KNOTS + 1];
+/// Free values over a `span`.
+const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 2] {
+    let mut all = [span[0]; KNOTS + 2];
     all[1] = span[1];
     let mut k = 0;
-    while k < FREE {
+    while k < KNOTS {
         all[k + 2] = Parameter::signed(
             NAMES[k],
-            "what is there beyond the begin, at knot k of 24",
+            "what is there at knot k of 24",
             Quantity::Force,
             100.0,
             if k == 0 { 1.0 } else { 0.0 },
@@ -110,13 +110,13 @@ const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 1] {
     all
 }
 
-static OVER_TIME: [Parameter; KNOTS + 1] = parameters([BEGIN, END]);
-static OVER_POSITION: [Parameter; KNOTS + 1] = parameters(STROKE);
+static OVER_TIME: [Parameter; KNOTS + 2] = parameters([BEGIN, END]);
+static OVER_POSITION: [Parameter; KNOTS + 2] = parameters(STROKE);
 
 static FRICTION: About = About {
     name: "friction-over-time",
     title: "friction level that varies freely with time",
-    equation: "k(t) s, k straight between 24 knots over the recording, k = 0 at its begin",
+    equation: "k(t) s, k straight between 24 knots over the recording",
     parameters: &OVER_TIME,
     slots: &[Slot::FrictionLevel],
     shows: "(residual x sign of velocity) against time",
@@ -126,7 +126,7 @@ static FRICTION: About = About {
 static FORCE: About = About {
     name: "force-over-time",
     title: "force that varies freely with time",
-    equation: "k(t), straight between 24 knots over the recording, k = 0 at its begin",
+    equation: "k(t), straight between 24 knots over the recording",
     parameters: &OVER_TIME,
     slots: &[Slot::SmoothForce],
     shows: "the residual against time",
@@ -136,7 +136,7 @@ static FORCE: About = About {
 static ALONG: About = About {
     name: "force-over-position",
     title: "force that varies freely along the stroke",
-    equation: "k(x), straight between 24 knots over the stroke, k = 0 at its begin",
+    equation: "k(x), straight between 24 knots over the stroke",
     parameters: &OVER_POSITION,
     slots: &[Slot::SmoothForce],
     shows: "the residual against position",
@@ -238,9 +238,9 @@ impl Effect for ForceOverPosition {
 /// The value in lane `i` at its time or place.
 fn at(p: Parameters<'_>, along: &[f64], i: usize) -> f64 {
     let (begin, end) = (p.get(0)[i], p.get(1)[i]);
-    let place = ((along[i] - begin) / (end - begin)).clamp(0.0, 1.0) * FREE as f64;
-    let knot = (place as usize).min(FREE - 1);
-    let value = |k: usize| if k == 0 { 0.0 } else { p.get(k + 1)[i] };
+    let place = ((along[i] - begin) / (end - begin)).clamp(0.0, 1.0) * GAPS as f64;
+    let knot = (place as usize).min(GAPS - 1);
+    let value = |k: usize| p.get(k + 2)[i];
     let part = place - knot as f64;
     (1.0 - part) * value(knot) + part * value(knot + 1)
 }
@@ -274,11 +274,10 @@ pub fn course(
             Some(Course::Wave { amplitude: sine.hypot(*cosine), period: *period, unit, along_unit })
         }
         ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
-            let knots: Vec<f64> = std::iter::once(0.0).chain(values.iter().copied()).collect();
-            Some(varies(&knots, moment, unit, along_unit))
+            Some(varies(values, moment, unit, along_unit))
         }
         ("gain-over-time", [even, growing]) => {
-            let share = |k: usize| k as f64 / FREE as f64;
+            let share = |k: usize| k as f64 / GAPS as f64;
             let at = |k| gain::gain([0.0, 1.0, *even, *growing], share(k));
             let knots: [f64; KNOTS] = std::array::from_fn(at);
             Some(varies(&knots, moment, unit, along_unit))
@@ -292,8 +291,8 @@ fn varies(knots: &[f64], moment: impl Fn(f64) -> f64, unit: String, along_unit: 
     let low = knots.iter().fold(f64::INFINITY, |low, v| low.min(*v));
     let high = knots.iter().fold(f64::NEG_INFINITY, |high, v| high.max(*v));
     let jump = |k: &usize| (knots[k + 1] - knots[*k]).abs();
-    let most = (0..FREE).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
-    let at = |k: usize| moment(k as f64 / FREE as f64);
+    let most = (0..GAPS).max_by(|a, b| jump(a).total_cmp(&jump(b))).unwrap_or(0);
+    let at = |k: usize| moment(k as f64 / GAPS as f64);
     let (from, to) = (at(most), at(most + 1));
     Course::Varies { range: high - low, from, to, unit, along_unit }
 }
@@ -306,14 +305,14 @@ mod tests {
     #[test]
     fn it_is_straight_between_the_knots_and_level_beyond() {
         let mut p = vec![10.0, 33.0];
-        p.extend((1..=FREE).map(|k| (k as f64).sin()));
+        p.extend((0..KNOTS).map(|k| (k as f64).cos()));
         for (time, exact) in [
-            (0.0, 0.0),
-            (10.0, 0.0),
-            (10.5, 0.5 * 1f64.sin()),
-            (12.25, 0.75 * 2f64.sin() + 0.25 * 3f64.sin()),
-            (33.0, 23f64.sin()),
-            (40.0, 23f64.sin()),
+            (0.0, 1.0),
+            (10.0, 1.0),
+            (10.5, 0.5 + 0.5 * 1f64.cos()),
+            (12.25, 0.75 * 2f64.cos() + 0.25 * 3f64.cos()),
+            (33.0, 23f64.cos()),
+            (40.0, 23f64.cos()),
         ] {
             let point = Point { time, ..Point::at(0.0, 0.1) };
             assert!((level(&FrictionOverTime, &p, point) - exact).abs() < 1e-12, "{time}");
@@ -338,8 +337,8 @@ mod tests {
 
     #[test]
     fn a_course_says_how_much_and_when() {
-        let mut values = vec![0.0; FREE];
-        values[10..].fill(-1.7);
+        let mut values = vec![0.3; KNOTS];
+        values[11..].fill(-1.4);
         let span = |end, unit| Span { begin: 0.0, end, unit };
         let told = |name, values| course(name, values, (span(23.0, "s"), span(0.23, "m")), "N");
         let varies = |from: f64, to: f64, along_unit: &str| Course::Varies {

@@ -2,14 +2,14 @@
 
 use super::{About, AsFound, CLaw, Effect, Motion, Parameter, Parameters, Refused, Slot, Smooth};
 use crate::axis::Quantity;
-use crate::simd::{tanh, vectorised};
+use crate::simd::{exp, ln, tanh, vectorised};
 
 /// How the friction saturates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Law {
     /// At once, as the lubricant can bear no more: `tanh(v / v_n)`.
     Limit,
-    /// Little by little, as its molecules align (fluid of Cross): `v / (v_n + |v|)`.
+    /// Little by little, as its molecules align (fluid of Cross): `u / (1 + |u|^m)` of `u = v / v_n`.
     Cross,
 }
 
@@ -23,19 +23,22 @@ pub static SHEAR_THINNING: ShearThinning = ShearThinning(Law::Limit);
 static CROSS: ShearThinning = ShearThinning(Law::Cross);
 static FORMS: [&dyn Effect; 1] = [&CROSS];
 
+/// So little that its power is 0 to rounding, and its logarithm is finite.
+const TINY: f64 = 1e-150;
 /// A speed below this multiple of the least one is at it.
 const AT_ONCE: f64 = 1.001;
 
-const PARAMETERS: [Parameter; 2] = [
-    Parameter::level("dF", "limit at high speed", Quantity::Force, 200.0, 4.0),
-    Parameter::shape(
-        "v_n",
-        "speed at which the lubricant thins",
-        Quantity::Velocity,
-        (1e-4, 0.3),
-        1e-2,
-    ),
-];
+const LIMIT: Parameter = Parameter::level("dF", "limit at high speed", Quantity::Force, 200.0, 4.0);
+const THINS: Parameter = Parameter::shape(
+    "v_n",
+    "speed at which the lubricant thins",
+    Quantity::Velocity,
+    (1e-4, 0.3),
+    1e-2,
+);
+/// From a power of the speed (below 1) to one that falls again (2: eddy currents).
+const EXPONENT: Parameter =
+    Parameter::shape("m", "exponent of the thinning", Quantity::One, (0.2, 2.5), 1.0).linear();
 const SHOWS: &str = "(residual x sign of velocity) against speed: too little friction at low speed, the same for \
                      speeding up and slowing down; the reverse of the Stribeck hump";
 
@@ -43,7 +46,7 @@ static ABOUT: About = About {
     name: "shear-thinning",
     title: "viscous friction that saturates (shear thinning)",
     equation: "dF tanh(v/v_n)",
-    parameters: &PARAMETERS,
+    parameters: &[LIMIT, THINS],
     slots: &[Slot::SmoothForce],
     shows: SHOWS,
     reference: "B. Gecim, W. O. Winer, J. Lubrication Technology 102, 1980 (limiting shear stress)",
@@ -51,12 +54,16 @@ static ABOUT: About = About {
 
 static CROSS_ABOUT: About = About {
     name: "shear-thinning:cross",
-    title: "viscous friction that saturates slowly (shear thinning)",
-    equation: "dF v/(v_n + |v|)",
-    parameters: &PARAMETERS,
+    title: "viscous friction that thins slowly (shear thinning)",
+    equation: "dF u/(1 + |u|^m), u = v/v_n",
+    parameters: &[
+        Parameter::level("dF", "twice what it is at v_n", Quantity::Force, 200.0, 4.0),
+        THINS,
+        EXPONENT,
+    ],
     slots: &[Slot::SmoothForce],
     shows: SHOWS,
-    reference: "M. M. Cross, J. Colloid Science 20, 1965",
+    reference: "M. M. Cross, J. Colloid Science 20, 1965; m = 2: J. H. Wouterse, IEE Proc. B 138, 1991 (eddy currents)",
 };
 
 impl Effect for ShearThinning {
@@ -80,6 +87,11 @@ impl Effect for ShearThinning {
         self.0 == Law::Cross
     }
 
+    /// A power of the speed has no speed of its own.
+    fn whatever(&self) -> &'static [&'static str] {
+        if self.0 == Law::Cross { &[THINS.name] } else { &[] }
+    }
+
     /// Of a friction level that sets in with the speed instead of at rest.
     fn law_of(&self) -> Option<&'static str> {
         Some("coulomb")
@@ -96,10 +108,10 @@ impl Effect for ShearThinning {
                 ..CLaw::NONE
             },
             Law::Cross => CLaw {
-                smooth: "force += {dF} * v / ({v_n} + fabs(v));",
+                smooth: "force += {dF} * v / {v_n} / (1.0 + pow(fabs(v) / {v_n}, {m}));",
                 damping: "{
-    const double sum = {v_n} + fabs(v);
-    damping += {dF} * {v_n} / (sum * sum);
+    const double thins = pow(fabs(v) / {v_n}, {m});
+    damping += {dF} / {v_n} * (1.0 + (1.0 - {m}) * thins) / ((1.0 + thins) * (1.0 + thins));
 }",
                 ..CLaw::NONE
             },
@@ -113,8 +125,10 @@ impl Effect for ShearThinning {
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
-        let law = if self.0 == Law::Limit { limited } else { cross };
-        law(p.get(0), p.get(1), m.velocity, out.force, out.damping);
+        match self.0 {
+            Law::Limit => limited(p.get(0), p.get(1), m.velocity, out.force, out.damping),
+            Law::Cross => cross(p.get(0), p.get(1), p.get(2), m.velocity, out.force, out.damping),
+        }
     }
 }
 
@@ -131,14 +145,17 @@ vectorised! {
         }
     }
 
-    fn cross(limit: &[f64], speed: &[f64], velocity: &[f64], force: &mut [f64], slope: &mut [f64]) {
+    fn cross(limit: &[f64], speed: &[f64], exponent: &[f64], velocity: &[f64], force: &mut [f64], slope: &mut [f64]) {
         let n = force.len();
-        let (limit, speed) = (&limit[..n], &speed[..n]);
+        let (limit, speed, exponent) = (&limit[..n], &speed[..n], &exponent[..n]);
         let (velocity, slope) = (&velocity[..n], &mut slope[..n]);
         for i in 0..n {
-            let per_sum = 1.0 / (speed[i] + velocity[i].abs());
-            force[i] += limit[i] * velocity[i] * per_sum;
-            slope[i] += limit[i] * speed[i] * per_sum * per_sum;
+            let per_speed = 1.0 / speed[i];
+            let u = velocity[i] * per_speed;
+            let thins = exp(exponent[i] * ln(u.abs() + TINY));
+            let part = 1.0 / (1.0 + thins);
+            force[i] += limit[i] * u * part;
+            slope[i] += limit[i] * per_speed * part * part * (1.0 + (1.0 - exponent[i]) * thins);
         }
     }
 }
@@ -156,9 +173,27 @@ mod tests {
         let (force, damping) = smooth(&SHEAR_THINNING, &p, Point::at(0.0, -0.5));
         assert!((force + 4.0).abs() < 1e-9 && damping.abs() < 1e-9);
         // The other form begins alike, and has come half way where this one is at three quarters.
+        let p = [4.0, 0.01, 1.0];
         let (force, damping) = smooth(&CROSS, &p, Point::at(0.0, 1e-6));
         assert!((force - 4e-4).abs() < 1e-7 && (damping - 400.0).abs() < 0.1);
         let (force, damping) = smooth(&CROSS, &p, Point::at(0.0, -0.01));
         assert!((force + 2.0).abs() < 1e-12 && (damping - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn it_thins_as_a_power_of_the_speed_or_falls_again() {
+        let at = |m: f64, v: f64| smooth(&CROSS, &[4.0, 0.01, m], Point::at(0.0, v));
+        // Far beyond v_n a power 1 - m of the speed is left.
+        let (near, far) = (at(0.4, 100.0).0, at(0.4, 200.0).0);
+        assert!((far / near - 2f64.powf(0.6)).abs() < 0.02, "{}", far / near);
+        // Eddy currents: most at v_n, 1/v beyond.
+        assert!(at(2.0, 0.01).1.abs() < 1e-9);
+        assert!((at(2.0, 1.0).0 - 0.04).abs() < 1e-4);
+        for (m, v) in [(0.4, 0.003), (0.4, -0.2), (1.7, 0.02), (2.5, -0.5)] {
+            let (below, above) = (at(m, v - 1e-7).0, at(m, v + 1e-7).0);
+            let slope = at(m, v).1;
+            assert!(((above - below) / 2e-7 - slope).abs() < 1e-4 * (1.0 + slope.abs()), "{m} {v}");
+        }
+        assert_eq!(at(0.4, 0.0).0, 0.0);
     }
 }

@@ -124,7 +124,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             // One that is more flexible may gain by what it is free to do.
             let freer = self.parameters(&beside) > self.parameters(&alone);
             let as_good = |set: &Node| self.comparison.compare(set, &beside).nats <= clear;
-            if as_good(&alone) || freer && self.explains(base, &alone) {
+            // A course need not begin at zero, and a shape of it lies beside what every system has.
+            let usual = || self.with_usual(alone.model.clone(), alone.setting);
+            let stands = as_good(&alone) || freer && self.explains(base, &alone);
+            if stands || usual().is_some_and(|usual| as_good(&usual)) {
                 kept = shapes;
             } else if let Some(other) = self.other_shapes(climb, (&shapes, &kept), rival, |set| {
                 as_good(set) && self.comparison.compare(last, set).nats > 0.0
