@@ -31,6 +31,20 @@ fn a_shape_of_a_rival_that_predicts_worse_goes_with_the_others() {
 }
 
 #[test]
+fn a_shape_of_a_rival_that_predicts_as_well_beside_what_every_system_has_stands() {
+    let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.1]), (BEAT, &[-0.04])];
+    let mut plant = Plant::new(11, &hidden);
+    plant.kin = vec![WAVE];
+    let last = node(&plant, &hidden[..1]);
+    for (usual, stands) in [(vec![], false), (vec![BEAT], true)] {
+        plant.usual = usual;
+        let thresholds = Thresholds { share: 0.0, ..narrow() };
+        let without = search(&plant, thresholds).instead(&climb(&plant, Vec::new()), &last);
+        assert_eq!(without.is_none(), stands);
+    }
+}
+
+#[test]
 fn other_shapes_of_a_rival_that_predict_as_well_take_the_place_of_worse_ones() {
     let thresholds = Thresholds { share: 0.0, ..narrow() };
     let mut plant = Plant::new(11, &[(WAVE, &[0.1]), (BEAT, &[-0.04])]);
