@@ -14,8 +14,7 @@ use missing_physics::report::Course;
 pub use gain::GainOverTime;
 pub use wave::ForceWave;
 
-/// Knots over the recording or the stroke; straight between them. All are free: a base need have no `offset` that a course
-/// could begin from.
+/// Knots over the recording or the stroke; straight between them.
 const KNOTS: usize = 24;
 const GAPS: usize = KNOTS - 1;
 
@@ -92,31 +91,34 @@ const fn moment(name: &'static str, meaning: &'static str, default: f64) -> Para
     Parameter::fixed(name, meaning, Quantity::Time, (-1e9, 1e9), default)
 }
 
-/// Free values over a `span`.
-const fn parameters(span: [Parameter; 2]) -> [Parameter; KNOTS + 2] {
-    let mut all = [span[0]; KNOTS + 2];
+/// A `span` and what is free at its knots, from the first one or the second one on; it is 0 before.
+///
+/// Along the stroke all are free: a base need have no `offset` that a course could begin from. Over time it begins at 0: an
+/// axis that rests does not show what is there.
+const fn parameters<const N: usize>(span: [Parameter; 2]) -> [Parameter; N] {
+    let mut all = [span[0]; N];
     all[1] = span[1];
-    let mut k = 0;
-    while k < KNOTS {
-        all[k + 2] = Parameter::signed(
-            NAMES[k],
+    let mut k = 2;
+    while k < N {
+        all[k] = Parameter::signed(
+            NAMES[k + KNOTS - N],
             "what is there at knot k of 24",
             Quantity::Force,
             100.0,
-            if k == 0 { 1.0 } else { 0.0 },
+            if k == 2 { 1.0 } else { 0.0 },
         );
         k += 1;
     }
     all
 }
 
-static OVER_TIME: [Parameter; KNOTS + 2] = parameters([BEGIN, END]);
+static OVER_TIME: [Parameter; KNOTS + 1] = parameters([BEGIN, END]);
 static OVER_POSITION: [Parameter; KNOTS + 2] = parameters(STROKE);
 
 static FRICTION: About = About {
     name: "friction-over-time",
     title: "friction level that varies freely with time",
-    equation: "k(t) s, k straight between 24 knots over the recording",
+    equation: "k(t) s, k straight between 24 knots over the recording, k = 0 at its begin",
     parameters: &OVER_TIME,
     slots: &[Slot::FrictionLevel],
     shows: "(residual x sign of velocity) against time",
@@ -126,7 +128,7 @@ static FRICTION: About = About {
 static FORCE: About = About {
     name: "force-over-time",
     title: "force that varies freely with time",
-    equation: "k(t), straight between 24 knots over the recording",
+    equation: "k(t), straight between 24 knots over the recording, k = 0 at its begin",
     parameters: &OVER_TIME,
     slots: &[Slot::SmoothForce],
     shows: "the residual against time",
@@ -240,7 +242,10 @@ fn at(p: Parameters<'_>, along: &[f64], i: usize) -> f64 {
     let (begin, end) = (p.get(0)[i], p.get(1)[i]);
     let place = ((along[i] - begin) / (end - begin)).clamp(0.0, 1.0) * GAPS as f64;
     let knot = (place as usize).min(GAPS - 1);
-    let value = |k: usize| p.get(k + 2)[i];
+    let value = |k: usize| {
+        let of = (k + p.parameters()).checked_sub(KNOTS).filter(|of| *of >= 2);
+        of.map_or(0.0, |of| p.get(of)[i])
+    };
     let part = place - knot as f64;
     (1.0 - part) * value(knot) + part * value(knot + 1)
 }
@@ -274,7 +279,9 @@ pub fn course(
             Some(Course::Wave { amplitude: sine.hypot(*cosine), period: *period, unit, along_unit })
         }
         ("friction-over-time" | "force-over-time" | "force-over-position", _) => {
-            Some(varies(values, moment, unit, along_unit))
+            let fixed = std::iter::repeat_n(0.0, KNOTS.saturating_sub(values.len()));
+            let knots: Vec<f64> = fixed.chain(values.iter().copied()).collect();
+            Some(varies(&knots, moment, unit, along_unit))
         }
         ("gain-over-time", [even, growing]) => {
             let share = |k: usize| k as f64 / GAPS as f64;
@@ -304,21 +311,27 @@ mod tests {
 
     #[test]
     fn it_is_straight_between_the_knots_and_level_beyond() {
-        let mut p = vec![10.0, 33.0];
-        p.extend((0..KNOTS).map(|k| (k as f64).cos()));
-        for (time, exact) in [
-            (0.0, 1.0),
-            (10.0, 1.0),
-            (10.5, 0.5 + 0.5 * 1f64.cos()),
-            (12.25, 0.75 * 2f64.cos() + 0.25 * 3f64.cos()),
-            (33.0, 23f64.cos()),
-            (40.0, 23f64.cos()),
+        let course = |from: usize| -> Vec<f64> {
+            [10.0, 33.0].into_iter().chain((from..KNOTS).map(|k| (k as f64).cos())).collect()
+        };
+        let (over_time, along) = (course(1), course(0));
+        let knot = |k: f64| k.cos();
+        // Over time it is 0 at the begin.
+        for (place, [before, after], part) in [
+            (0.0, [0.0, 1.0], 0.0),
+            (10.0, [0.0, 1.0], 0.0),
+            (10.5, [0.0, 1.0], 0.5),
+            (12.25, [2.0, 3.0], 0.25),
+            (33.0, [22.0, 23.0], 1.0),
+            (40.0, [22.0, 23.0], 1.0),
         ] {
-            let point = Point { time, ..Point::at(0.0, 0.1) };
-            assert!((level(&FrictionOverTime, &p, point) - exact).abs() < 1e-12, "{time}");
-            assert!((smooth(&ForceOverTime, &p, point).0 - exact).abs() < 1e-12, "{time}");
-            let place = Point::at(time, 0.1);
-            assert!((smooth(&ForceOverPosition, &p, place).0 - exact).abs() < 1e-12, "{time}");
+            let exact = (1.0 - part) * knot(before) + part * knot(after);
+            let at_rest = if before == 0.0 { part * knot(after) } else { exact };
+            let point = Point { time: place, ..Point::at(0.0, 0.1) };
+            assert!((level(&FrictionOverTime, &over_time, point) - at_rest).abs() < 1e-12);
+            assert!((smooth(&ForceOverTime, &over_time, point).0 - at_rest).abs() < 1e-12);
+            let point = Point::at(place, 0.1);
+            assert!((smooth(&ForceOverPosition, &along, point).0 - exact).abs() < 1e-12, "{place}");
         }
     }
 
@@ -337,8 +350,8 @@ mod tests {
 
     #[test]
     fn a_course_says_how_much_and_when() {
-        let mut values = vec![0.3; KNOTS];
-        values[11..].fill(-1.4);
+        let mut values = vec![0.0; GAPS];
+        values[10..].fill(-1.7);
         let span = |end, unit| Span { begin: 0.0, end, unit };
         let told = |name, values| course(name, values, (span(23.0, "s"), span(0.23, "m")), "N");
         let varies = |from: f64, to: f64, along_unit: &str| Course::Varies {
@@ -350,7 +363,7 @@ mod tests {
         };
         assert_eq!(told("friction-over-time", &values).unwrap(), varies(10.0, 11.0, "s"));
         let Some(Course::Varies { range, from, to, unit, along_unit }) =
-            told("force-over-position", &values)
+            told("force-over-position", &[&[0.0][..], &values].concat())
         else {
             panic!("it varies")
         };
