@@ -24,6 +24,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
             let without = best.model.without(self.family, term);
             let Some(usual) = self.with_usual(without, best.setting) else { continue };
+            // What stood in the place of a level may have made up for a flexible form beside it.
+            let usual = self.plainest(usual, &[]);
             let loss = self.comparison.compare(&usual, &best);
             let as_good = loss.nats < self.thresholds.better;
             let outcome = if as_good { Outcome::Added } else { Outcome::Worse };
