@@ -362,8 +362,9 @@ mod tests {
             along_unit: along_unit.into(),
         };
         assert_eq!(told("friction-over-time", &values).unwrap(), varies(10.0, 11.0, "s"));
+        let along = [&[0.0][..], &values].concat();
         let Some(Course::Varies { range, from, to, unit, along_unit }) =
-            told("force-over-position", &[&[0.0][..], &values].concat())
+            told("force-over-position", &along)
         else {
             panic!("it varies")
         };
