@@ -275,7 +275,7 @@ impl Found {
         });
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model).or(astray);
         // Below what the sensors make there are no shares.
-        let beyond = top.scale > ahead.budget();
+        let beyond = ahead.has_shares() && top.scale > ahead.budget();
         let idle = beyond && leaves_most(&self.base, top, ahead.budget());
         let falls = top.foretells_more(&self.base) && !idle;
         if self.complete && falls && no_cause.is_none() {

@@ -181,6 +181,10 @@ impl<F: ModelFamily + ?Sized> Ahead for Residuals<'_, F> {
         (rms > complete * noise).then_some(Remains::Slow { rms, noise, unit })
     }
 
+    fn has_shares(&self) -> bool {
+        !self.whitened
+    }
+
     fn is_no_cause(&self, base: &Fitted, last: &Fitted) -> Option<NoCause> {
         let [before, after] = [base, last].map(|model| self.residual(model));
         let [rms, left] = [&before, &after].map(|r| statistics::rms(r, f64::INFINITY).powi(2));

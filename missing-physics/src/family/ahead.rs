@@ -51,6 +51,12 @@ pub trait Ahead: Sync {
         None
     }
 
+    /// Whether effects explain as much of what is missing as they take away of what errs beyond the budget: not of residuals from
+    /// which an autoregression has taken what is slow.
+    fn has_shares(&self) -> bool {
+        true
+    }
+
     /// What is wrong with the recording itself: with it no model is complete.
     fn faults(&self) -> Option<Fault> {
         None
