@@ -248,6 +248,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 }
                 let unasked = (self.stop)() && !costs.is_empty() && !self.ahead.rivals().is_empty();
                 rival = unasked.then_some(Remains::RivalsUnasked);
+            } else if !costs.is_empty()
+                && let Some((without, found)) = self.outdone(&climb, &last)
+            {
+                // What a rival leaves of the names may be what a refused model does better.
+                rival = rival.into_iter().chain([found]).max_by(|a, b| gain(a).total_cmp(&gain(b)));
+                best = without;
+                continue;
             }
             let mut beside = self.beside(&climb, &last);
             if beside.promises.is_empty() {

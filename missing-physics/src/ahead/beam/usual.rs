@@ -66,6 +66,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let (found, _) = self.prune(&again, found);
         let by = self.comparison.compare(&best, &found);
         if by.nats <= self.thresholds.clear(self.comparison.compare(&climb.base, &found).nats) {
+            // What was refused beside them still shows how much can be foretold.
+            climb.refused = again.refused;
             return best;
         }
         *climb = again;

@@ -157,12 +157,40 @@ fn a_rival_that_is_told_beside_all_effects_does_not_keep_a_refused_set_from_taki
 }
 
 #[test]
-fn a_refused_set_takes_nothing_back_with_more_effects_or_where_it_predicts_no_better() {
+fn what_a_rival_leaves_is_compared_with_a_refused_set_too() {
+    let push: (usize, &[f64]) = (PUSH, &[0.1]);
+    let mut plant = Plant::new(11, &[HIDDEN[0], HIDDEN[1], push]);
+    plant.kin = Vec::new();
+    let mut climb = climb(&plant, Vec::new());
+    let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
+    climb.refused.push((node(&plant, &HIDDEN[..1]), refusal));
+    let best = node(&plant, &[HIDDEN[0], HIDDEN[1], push]);
+    let found = search(&plant, Thresholds { share: 0.0, ..narrow() }).finish_grown(climb, best);
+    assert_eq!(found.added, [PUSH]);
+    let of_push = |decision: &&Decision| decision.compared_with == ["push"];
+    let refused = |decision: &Decision| matches!(decision.because, Some(Reason::Refused { .. }));
+    assert!(found.decisions.iter().filter(of_push).any(refused), "{:?}", found.decisions);
+}
+
+#[test]
+fn a_refused_set_takes_nothing_back_where_it_predicts_no_better() {
     let plant = Plant::new(13, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
     let (push, wave, both) = ((PUSH, &[0.01][..]), (WAVE, &[0.05][..]), (BOTH, &[1e-4][..]));
     assert!(outdone(&plant, &[push], &[wave]).is_some());
-    assert!(outdone(&plant, &[push], &[wave, (BEAT, &[0.05])]).is_none());
     assert!(outdone(&plant, &[wave], &[both]).is_none());
+}
+
+#[test]
+fn a_refused_set_of_more_effects_takes_back_what_leaves_something_where_it_leaves_nothing() {
+    let push: (usize, &[f64]) = (PUSH, &[1e-4]);
+    for (size, takes_back) in [(0.05, true), (0.001, false)] {
+        let [wave, beat] = [[size], [size]];
+        let both: [(usize, &[f64]); 2] = [(WAVE, &wave), (BEAT, &beat)];
+        let plant = Plant::new(13, &both);
+        assert_eq!(outdone(&plant, &[push], &both).is_some(), takes_back, "{size}");
+        // It leaves the beat.
+        assert!(outdone(&plant, &[push], &[both[0], (TONE, &[1e-4, 3.0])]).is_none(), "{size}");
+    }
 }
 
 #[test]

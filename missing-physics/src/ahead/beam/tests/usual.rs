@@ -53,3 +53,16 @@ fn with_the_usual_effects_alone_nothing_is_explained_that_was_not_before() {
     let best = search(&plant, narrow()).beside_usual(&mut climb, wave);
     assert_eq!((best.effects(&plant), climb.nodes.len()), (vec![WAVE], 1));
 }
+
+#[test]
+fn what_is_refused_beside_the_usual_effects_is_known_where_they_are_not_taken() {
+    let [push, wave]: [(usize, &[f64]); 2] = [(PUSH, &[0.002]), (WAVE, &[0.1])];
+    let mut plant = Plant::new(5, &[push, wave]);
+    (plant.usual, plant.none) = (vec![PUSH], Some(WAVE));
+    let mut climb = climb(&plant, Vec::new());
+    let found = node(&plant, &[(TWIN, &[0.1])]);
+    let best = search(&plant, narrow()).beside_usual(&mut climb, found);
+    assert_eq!(best.effects(&plant), [TWIN]);
+    let refused: Vec<_> = climb.refused.iter().map(|(set, _)| set.effects(&plant)).collect();
+    assert!(refused.contains(&vec![PUSH, WAVE]), "{refused:?}");
+}
