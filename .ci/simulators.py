@@ -177,6 +177,7 @@ IN_MODELICA = (
     {"spring:stiffening": {"k": 50.0, "F_2": 1.0, "F_3": 2.0, "start": -0.05, "end": 0.4}},
     {"reversal-decay": {"F_r": 1.2, "l": 1e-2}},
     {"reversal-decay:hysteresis": {"F_h": 1.2, "l": 1e-2}},
+    {"reversal-decay:bouc-wen": {"F_h": 1.2, "l": 1e-2, "n": 2.0, "beta": 0.5}},
     {"backlash": {"F_L": 1.5, "b": 1e-3}},
     {"motor-gain": {"g": 0.9}, "saturation": {"u_max": 12.0}, "actuator-lag": {"tau": 4e-3}},
     {"actuator-lag:second-order": {"tau": 4e-3, "zeta": 0.4}, "encoder": {"a": 1e-4, "b": 1e-4, "p": 5e-3}},

@@ -1,6 +1,7 @@
 //! Friction after a reversal that is not yet, or no longer, what it is further on: balls that must reseat, wipers that fold
 //! over, grease that was pushed aside.
 
+mod bouc_wen;
 mod hysteresis;
 
 use super::memory::{BEGIN_OF_STEP, since_begin};
@@ -17,7 +18,7 @@ pub struct ReversalDecay;
 
 /// So far from the last reversal that nothing of it is left.
 const FAR: f64 = f64::MAX;
-static FORMS: [&dyn Effect; 1] = [&hysteresis::Hysteresis];
+static FORMS: [&dyn Effect; 2] = [&hysteresis::Hysteresis, &bouc_wen::BoucWen];
 
 static ABOUT: About = About {
     name: "reversal-decay",

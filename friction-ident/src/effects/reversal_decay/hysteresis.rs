@@ -13,29 +13,25 @@ use crate::simd::{exp, sign, vectorised};
 #[derive(Clone, Copy, Debug)]
 pub struct Hysteresis;
 
+pub(super) const SIZE: Parameter =
+    Parameter::level("F_h", "force after a long way in one direction", Quantity::Force, 100.0, 1.0);
+pub(super) const LENGTH: Parameter = Parameter::shape(
+    "l",
+    "distance over which it turns around",
+    Quantity::Length,
+    (1e-6, 0.1),
+    1e-3,
+);
+pub(super) const SHOWS: &str = "(residual x sign of velocity) against the distance since the last reversal, the same at every \
+                                speed; less of it where the way before was short";
+
 static ABOUT: About = About {
     name: "reversal-decay:hysteresis",
     title: "hysteresis of cables and seals",
     equation: "F_h h s, l dh = (s - h) |dx|",
-    parameters: &[
-        Parameter::level(
-            "F_h",
-            "force after a long way in one direction",
-            Quantity::Force,
-            100.0,
-            1.0,
-        ),
-        Parameter::shape(
-            "l",
-            "distance over which it turns around",
-            Quantity::Length,
-            (1e-6, 0.1),
-            1e-3,
-        ),
-    ],
+    parameters: &[SIZE, LENGTH],
     slots: &[Slot::Memory],
-    shows: "(residual x sign of velocity) against the distance since the last reversal, the same at every speed; less of it \
-            where the way before was short",
+    shows: SHOWS,
     reference: "P. R. Dahl, Aerospace Corp. TOR-0158, 1968 (here beside a friction that sticks)",
 };
 
@@ -61,6 +57,10 @@ impl Effect for Hysteresis {
 }",
             ..CDynamics::NONE
         })
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("reversal-decay:bouc-wen")
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

@@ -195,6 +195,17 @@ impl Part {
                 equations: vec!["der({}_h) = if slides then (v - {}_h*abs(v))/{l} else 0;".into()],
                 ..Self::default()
             },
+            "reversal-decay:bouc-wen" => Self {
+                level: "{F_h}*@s*{}_h".into(),
+                reads_sliding: true,
+                declared: vec!["Real {}_h \"share of the force, -1..1\";".into()],
+                initial: vec!["{}_h = sign(v);".into()],
+                equations: vec![
+                    "der({}_h) = if slides then v*(1 - abs({}_h)^{n}*(1 - {beta} + {beta}*sign({}_h*v)))/{l} else 0;"
+                        .into(),
+                ],
+                ..Self::default()
+            },
             "backlash" => gap_without_load(),
             "motor-gain" => drive("{g}*@in"),
             "saturation" => drive("max(-{u_max}, min({u_max}, @in))"),
