@@ -61,3 +61,47 @@ fn of_segment(
     let start = Start { position: position[0], velocity, command: force[0], ..Start::default() };
     simulate(model, &Input::new(time, force, recording.hold()), &start)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::Axis;
+
+    /// `x = t^2` over 0.1 s twice, from 0 and from 0.3 m: what 6 N do to 3 kg.
+    fn pulled() -> Recording {
+        let time: Vec<f64> = (0..202).map(|k| f64::from(k % 101) * 1e-3).collect();
+        let run = |k: usize| k / 101;
+        let place = |(k, t): (usize, &f64)| 0.3 * run(k) as f64 + t * t;
+        let position = time.iter().enumerate().map(place).collect();
+        let channels = vec![
+            Channel::new("force", "N", vec![6.0; time.len()]),
+            Channel::new("position", "m", position),
+        ];
+        let segment = (0..time.len()).map(|k| run(k) as i64).collect();
+        Recording::with_segments("pulled", time, channels, segment).unwrap()
+    }
+
+    #[test]
+    fn each_segment_begins_where_it_was_measured_and_drifts_as_its_first_velocity_is_off() {
+        let run = free_run(&Model::new(Axis::Linear, 3.0).unwrap(), &pulled()).unwrap();
+        let [x, v] = ["position", "velocity"].map(|name| run.channel(name).unwrap().values.clone());
+        let measured = run.channel("measured_position").unwrap().values.clone();
+        // The mean velocity of the first five intervals is that of the middle of them.
+        for first in [0, 101] {
+            assert_eq!(x[first].to_bits(), measured[first].to_bits());
+            assert!((v[first] - 5e-3).abs() < 1e-12, "{}", v[first]);
+            let drifted = x[first + 100] - measured[first + 100];
+            assert!((drifted - 5e-3 * 0.1).abs() < 1e-9, "{drifted}");
+        }
+        // It grows in proportion to time: 0.5 mm at the end, 0.5 mm times the rms of k / 100 over the samples.
+        let rms =
+            5e-4 * ((0..=100).map(|k| (f64::from(k) / 100.0).powi(2)).sum::<f64>() / 101.0).sqrt();
+        let told = deviation(&run).unwrap();
+        assert!((told / rms - 1.0).abs() < 1e-6, "{told} {rms}");
+    }
+
+    #[test]
+    fn a_recording_that_is_no_free_run_has_no_deviation() {
+        assert!(deviation(&pulled()).is_err());
+    }
+}
