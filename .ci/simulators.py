@@ -171,6 +171,7 @@ IN_MODELICA = (
     {"position-friction": {**{f"c_{k}": 1.0 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory": {"tau_L": 0.01}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory:lag": {"tau_L": 0.01}},
+    {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "frictional-memory:whole": {"tau_L": 0.01, "F_w": 5.0}},
     {"rising-static-friction": {"dF": 2.0, "gamma": 0.1, "v_s": 1e-2}},
     {"stribeck": {"dF": 2.0, "v_s": 4e-3}, "rising-static-friction:bond": {"gamma": 0.1}},
     {"rising-static-friction:ageing": {"B": 0.5, "D_c": 1e-4, "v_c": 1e-2}},

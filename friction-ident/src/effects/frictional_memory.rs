@@ -1,5 +1,7 @@
 //! Frictional memory: the friction follows the velocity with a delay.
 
+mod whole;
+
 use super::{
     About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
@@ -17,6 +19,8 @@ pub struct FrictionalMemory;
 #[derive(Clone, Copy, Debug)]
 struct Lagged;
 
+/// What both forms are where the viscous friction follows, too.
+const WHOLE: &str = "frictional-memory:whole";
 const TIME: Parameter =
     Parameter::shape("tau_L", "delay of the friction", Quantity::Time, (1e-4, 0.2), 0.01);
 const SHOWS: &str = "a loop in the residual against velocity that widens with |dv/dt|; not separable \
@@ -41,7 +45,7 @@ static LAGGED_ABOUT: About = About {
     reference: "A. Ruina, J. Geophysical Research 88, 1983 (state-variable friction)",
 };
 static LAGGED: Lagged = Lagged;
-static FORMS: [&dyn Effect; 1] = [&LAGGED];
+static FORMS: [&dyn Effect; 2] = [&LAGGED, &whole::Whole];
 
 impl Effect for FrictionalMemory {
     fn about(&self) -> &'static About {
@@ -74,6 +78,10 @@ impl Effect for FrictionalMemory {
 
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &FORMS
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some(WHOLE)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {
@@ -132,6 +140,10 @@ impl Effect for Lagged {
 
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw::NONE)
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some(WHOLE)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

@@ -186,6 +186,14 @@ impl Part {
                 equations: vec!["{tau_L}*der({}_w) = abs(v) - {}_w;".into()],
                 ..Self::default()
             },
+            "frictional-memory:whole" => Self {
+                level_velocity: "{}_w".into(),
+                level: "{F_w}*{}_w".into(),
+                declared: vec!["Real {}_w \"speed that friction follows\";".into()],
+                initial: vec!["{}_w = abs(v);".into()],
+                equations: vec!["{tau_L}*der({}_w) = abs(v) - {}_w;".into()],
+                ..Self::default()
+            },
             "reversal-decay" => reversal(),
             "reversal-decay:hysteresis" => Self {
                 level: "{F_h}*@s*{}_h".into(),
