@@ -147,8 +147,7 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// Shape parameters whose value the data need not tell: whatever it is, a damping that may be none, the law is that
-    /// effect.
+    /// Parameters whose value the data need not tell: whatever it is, a damping that may be none, the law is that effect.
     fn whatever(&self) -> &'static [&'static str] {
         &[]
     }

@@ -633,6 +633,10 @@ impl ModelFamily for FrictionFamily {
         self.effect(term).is_none_or(|effect| !effect.whatever().contains(&parameter))
     }
 
+    fn may_be_none(&self, term: usize, parameter: &str) -> bool {
+        !self.needs(term, parameter)
+    }
+
     fn limits(&self, model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {
         let parameter = &self.terms[term].parameters[parameter];
         let most = || {

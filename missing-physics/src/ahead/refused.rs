@@ -95,7 +95,8 @@ pub fn unknown<F: ModelFamily + ?Sized>(
         // would do as well of those of each unit.
         let place = node.model.terms.iter().position(|term| *term == index)?;
         let size_of = |those: &[usize]| intervals::of_size((family, ahead), node, place, those);
-        let amplitudes = amplitudes(&term.parameters);
+        let mut amplitudes = amplitudes(&term.parameters);
+        amplitudes.retain(|k| !family.may_be_none(index, &term.parameters[*k].name));
         let (largest, is) = size_of(&amplitudes)?;
         if is.low <= 0.0 && is.high >= 0.0 {
             return Some(unknown(&term.parameters[largest], &is));

@@ -87,6 +87,8 @@ pub struct Plant {
     regimes: Vec<Regime>,
     /// A term that is no effect in its plain form.
     pub none: Option<usize>,
+    /// The effects whose amplitudes may be none.
+    pub optional: Vec<usize>,
     /// The effects that are shapes of the rival.
     pub kin: Vec<usize>,
     /// Forms with what they are forms of.
@@ -186,6 +188,7 @@ impl Plant {
             regimes: vec![Regime { name: "all".into(), member: vec![true; SAMPLES] }],
             time,
             none: None,
+            optional: Vec::new(),
             kin: vec![PUSH],
             forms: vec![(BENT, WAVE)],
             usual: Vec::new(),
@@ -337,6 +340,9 @@ impl ModelFamily for Plant {
     }
     fn needs(&self, _term: usize, _parameter: &str) -> bool {
         true
+    }
+    fn may_be_none(&self, term: usize, _parameter: &str) -> bool {
+        self.optional.contains(&term)
     }
     fn limits(&self, _model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {
         let parameter = &self.terms[term].parameters[parameter];

@@ -154,6 +154,11 @@ pub trait ModelFamily: Sync {
         false
     }
 
+    /// Whether an amplitude of a term may be 0, and leaves it the effect that it is.
+    fn may_be_none(&self, _term: usize, _parameter: &str) -> bool {
+        false
+    }
+
     /// The limits beyond which a parameter of a term makes no sense in a model: those of its search, unless others of the
     /// model's parameters say less.
     fn limits(&self, _model: &Fitted, term: usize, parameter: usize) -> (f64, f64) {

@@ -49,6 +49,11 @@ m->remembered += {F_w} * {s0};",
         Some(CLaw::NONE)
     }
 
+    /// None of it may follow.
+    fn whatever(&self) -> &'static [&'static str] {
+        &["F_w"]
+    }
+
     /// Alone it is a body behind a damper.
     fn is_only_flexible(&self) -> bool {
         true
