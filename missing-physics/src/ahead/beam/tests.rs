@@ -306,7 +306,8 @@ fn an_effect_is_not_told_whose_shape_the_data_do_not_tell() {
     assert!(matches!(wave(1e-5), Some(Refusal::Unknown { parameter, low, high, .. })
         if parameter == "wave.size" && low < 0.0 && high > 0.0));
     // Unless it is that effect without it, too.
-    let optional = Plant { optional: vec![WAVE], ..Plant::new(6, &[(TONE, &[0.05, 5.0])]) };
+    let mut optional = Plant::new(6, &[(TONE, &[0.05, 5.0])]);
+    optional.optional = vec![WAVE];
     assert_eq!(not_told(&optional, &optional, &base, &node(&optional, &[(WAVE, &[1e-5])])), None);
     // What may be more than it may be at most: beside its twin the data do not tell how large it is.
     let plant = Plant::new(6, &[(WAVE, &[9.9])]);
