@@ -93,7 +93,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         if changed && !(self.stop)() {
             let flexible = self.refit(&start, node.setting, STEPS.1);
-            if self.comparison.compare(&best, &flexible).nats > FORM {
+            let noise = self.comparison.noise(&flexible);
+            if self.comparison.compare(&best, &flexible).nats > FORM + noise {
                 best = flexible;
             }
         }
