@@ -168,23 +168,15 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         errors
     }
 
-    /// What a step must gain in the other folds. A rival, or a form that is only tried in the place of another one, is free
-    /// everywhere, also where only the fold looks that is held out (at the moment of a jump, at the end of the stroke): there
-    /// a step that follows noise would let it say anything, and what it is asked is only whether effects are needed beside
-    /// it.
+    /// What a step must gain in the other folds. A rival is free everywhere, also where only the fold looks that is held
+    /// out (at the moment of a jump, between two knots): there a step that follows noise would let it say anything, and
+    /// what it is asked is only whether effects are needed beside it. Noise gains half a nat for each of its values.
     fn doubt(&self, node: &Node) -> f64 {
-        let noise = self.noise(node);
-        if noise == 0.0 { 0.0 } else { noise * node.correlation() }
-    }
-
-    /// What noise gains with what is free in a model, nats: half of one for each of its values.
-    pub fn noise(&self, node: &Node) -> f64 {
         let rivals = self.ahead.rivals();
-        let is_rival = |term: usize| rivals.iter().any(|rival| rival.term == term);
-        let is_free = |term: &&usize| is_rival(**term) || !self.ahead.is_candidate(**term);
-        let terms = node.model.terms.iter().filter(is_free);
+        let is_rival = |term: &&usize| rivals.iter().any(|rival| rival.term == **term);
+        let terms = node.model.terms.iter().filter(is_rival);
         let free: usize = terms.map(|term| self.family.terms()[*term].parameters.len()).sum();
-        0.5 * free as f64
+        if free == 0 { 0.0 } else { 0.5 * free as f64 * node.correlation() }
     }
 
     /// Normal equations of one fold.
@@ -312,17 +304,12 @@ mod tests {
     }
 
     #[test]
-    fn noise_gains_half_a_nat_for_each_value_of_what_is_free() {
+    fn noise_gains_half_a_nat_for_each_value_of_a_rival() {
         let plant = Plant::new(1, &[]);
         let comparison = Comparison::new(&plant, &plant);
-        let doubt = |terms: &[(usize, &[f64])]| {
-            let node = fit::evaluated(&plant, Plant::model(terms), 0);
-            comparison.doubt(&node) / node.correlation()
-        };
-        assert_eq!([doubt(&[]), doubt(&[(WAVE, &[0.1])])], [0.0; 2]);
-        assert_eq!(doubt(&[(RIVAL, &[0.1])]), 0.5);
-        // A form that is only tried in the place of another one.
-        assert_eq!(doubt(&[(BENT, &[0.1, 0.1])]), 1.0);
+        let nodes = [vec![], vec![WAVE], vec![RIVAL]].map(|terms| fitted(&plant, &terms));
+        let doubts = nodes.each_ref().map(|node| comparison.doubt(node) / node.correlation());
+        assert_eq!(doubts, [0.0, 0.0, 0.5]);
     }
 
     #[test]

@@ -93,8 +93,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         if changed && !(self.stop)() {
             let flexible = self.refit(&start, node.setting, STEPS.1);
-            let noise = self.comparison.noise(&flexible);
-            if self.comparison.compare(&best, &flexible).nats > FORM + noise {
+            if self.comparison.compare(&best, &flexible).nats > FORM {
                 best = flexible;
             }
         }
