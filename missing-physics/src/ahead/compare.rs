@@ -9,7 +9,7 @@ use super::fit::Normal;
 use super::node::Node;
 use super::{Ahead, scales, statistics};
 use crate::family::{Fitted, ModelFamily, Role, Term, TermParameter};
-use crate::statistics::basis::solve;
+use crate::statistics::basis::{dot, solve};
 
 /// Folds of interleaved pieces.
 const FOLDS: usize = 5;
@@ -109,7 +109,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
     }
 
     /// Each error as predicted by a model that was refitted without its fold: one Gauss-Newton step, as far as it
-    /// lowers the loss of the other folds.
+    /// lowers the loss of the other folds. Of what these know nothing the model as it is says it.
     fn held_out(&self, node: &Node) -> Vec<f64> {
         let white = |errors: &[f64]| node.law.left(errors, self.ahead.instants());
         let jacobian: Vec<Vec<f64>> =
@@ -120,6 +120,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         let parts: Vec<Normal> =
             (0..FOLDS).map(|fold| self.part(node, &jacobian, node.deviation, fold)).collect();
         let mut trials: Vec<(Fitted, usize)> = Vec::new();
+        let mut known = vec![false; node.innovations.len()];
         for held in 0..FOLDS {
             let mut matrix = vec![vec![0.0; moved.len()]; moved.len()];
             let mut moment = vec![0.0; moved.len()];
@@ -135,6 +136,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
                 moment[k] -= scale * node.model.values[k] * shrunk.curvature[k];
             }
             let by = solve(&matrix, &moment, &all);
+            self.known(node, (&jacobian, &matrix), held, &mut known);
             for share in SHARES {
                 let values = moved.iter().zip(&by).map(|(moved, by)| moved.by(share * by));
                 let model = Fitted { terms: node.model.terms.clone(), values: values.collect() };
@@ -161,11 +163,32 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
                     best = (loss, step);
                 }
             }
-            for (i, e) in errors.iter_mut().enumerate().filter(|(i, _)| self.fold[*i] == held) {
+            let of_fold = |i: usize| known[i] && self.fold[i] == held;
+            for (i, e) in errors.iter_mut().enumerate().filter(|(i, _)| of_fold(*i)) {
                 *e = best.1[i];
             }
         }
         errors
+    }
+
+    /// Of which errors of a fold the others know something: what they leave open of the parameters changes such an error by
+    /// less than its own deviation. Elsewhere (at an end of the stroke that only this fold visits) a refit may say anything.
+    fn known(
+        &self,
+        node: &Node,
+        (jacobian, matrix): (&[Vec<f64>], &[Vec<f64>]),
+        held: usize,
+        known: &mut [bool],
+    ) {
+        let all: Vec<usize> = (0..matrix.len()).collect();
+        let unit = |k: usize| -> Vec<f64> { all.iter().map(|l| f64::from(*l == k)).collect() };
+        let inverse: Vec<Vec<f64>> = all.iter().map(|k| solve(matrix, &unit(*k), &all)).collect();
+        let allowed = node.deviation.powi(2) / node.correlation();
+        for (i, known) in known.iter_mut().enumerate().filter(|(i, _)| self.fold[*i] == held) {
+            let row: Vec<f64> = jacobian.iter().map(|column| column[i]).collect();
+            let variance: f64 = inverse.iter().zip(&row).map(|(of, by)| by * dot(of, &row)).sum();
+            *known = variance <= allowed;
+        }
     }
 
     /// What a step must gain in the other folds. A rival is free everywhere, also where only the fold looks that is held
@@ -310,6 +333,26 @@ mod tests {
         let nodes = [vec![], vec![WAVE], vec![RIVAL]].map(|terms| fitted(&plant, &terms));
         let doubts = nodes.each_ref().map(|node| comparison.doubt(node) / node.correlation());
         assert_eq!(doubts, [0.0, 0.0, 0.5]);
+    }
+
+    #[test]
+    fn nobody_knows_what_only_the_fold_looks_at_that_is_held_out() {
+        let plant = Plant::new(1, &[]);
+        let comparison = Comparison::new(&plant, &plant);
+        let node = fit::evaluated(&plant, Plant::model(&[]), 0);
+        let n = node.innovations.len();
+        let here = |i: usize| comparison.fold[i] == 0 && i < 100;
+        // One parameter acts everywhere, one at a place that the first fold visits once.
+        let place = (0..n).map(|i| if here(i) { node.deviation } else { 0.0 });
+        let jacobian = [vec![0.1 * node.deviation; n], place.collect()];
+        for (prior, visible) in [(1e-3, false), (1e3, true)] {
+            let matrix = [vec![0.008 * n as f64, 0.0], vec![0.0, prior]];
+            let mut known = vec![false; n];
+            comparison.known(&node, (&jacobian, &matrix), 0, &mut known);
+            for (i, known) in known.iter().enumerate() {
+                assert_eq!(*known, comparison.fold[i] == 0 && (visible || !here(i)), "{i}");
+            }
+        }
     }
 
     #[test]
