@@ -1,6 +1,6 @@
 //! Frictional memory of the whole friction curve: the viscous part follows, too.
 
-use super::{SHOWS, TIME, follow};
+use super::{LAGGED, SHOWS, TIME};
 use crate::axis::Quantity;
 use crate::effects::{
     About, CDynamics, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot,
@@ -33,15 +33,9 @@ impl Effect for Whole {
 
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
-            states: 1,
-            start: "{s0} = fabs(velocity);",
             recall: "m->level_velocity = {s0};
 m->remembered += {F_w} * {s0};",
-            remember: "if (m->taken > 0.0) {
-    const double mean = fabs(m->displacement) / m->taken;
-    {s0} = mean + ({s0} - mean) * exp(-m->taken / {tau_L});
-}",
-            ..CDynamics::NONE
+            ..LAGGED.c_dynamics()?
         })
     }
 
@@ -64,30 +58,30 @@ m->remembered += {F_w} * {s0};",
     }
 }
 
-/// State: the speed that friction follows.
+/// The state of [`super::Lagged`].
 impl Memory for Whole {
     fn states(&self) -> usize {
-        1
+        LAGGED.states()
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state[0] = velocity.abs();
+    fn start(&self, p: &[f64], velocity: f64, state: &mut [f64]) {
+        LAGGED.start(p, velocity, state);
     }
 
     fn recall(
         &self,
         p: Parameters<'_>,
-        _m: &Motion<'_>,
-        _past: &Past,
+        m: &Motion<'_>,
+        past: &Past,
         state: &[f64],
         out: &mut Recalled<'_>,
     ) {
-        out.level_velocity.copy_from_slice(state);
+        LAGGED.recall(p, m, past, state, out);
         recall(p.get(1), state, out.level);
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        follow(p.get(0), taken.duration, taken.displacement, state);
+        LAGGED.remember(p, taken, state);
     }
 }
 

@@ -1,9 +1,9 @@
 //! Hysteresis of another shape: how sharply it bends, and where on its way back.
 
-use super::hysteresis::{LENGTH, SHOWS, SIZE};
+use super::hysteresis::{Hysteresis, LENGTH, SHOWS, SIZE, follow, turn};
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
-use crate::effects::memory::{BEGIN_OF_STEP, since_begin};
+use crate::effects::memory::since_begin;
 use crate::effects::{
     About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
@@ -11,7 +11,7 @@ use crate::simd::{exp, ln, sign, vectorised};
 
 /// `level += F_h h s` with `l dh = (1 - |h|^n (1 - beta + beta sgn(h dx))) dx`: on the way out it bends the more sharply the
 /// greater `n`; on the way back it has the slope of its begin until it is gone with `beta` 1/2, twice that at first with 1,
-/// and none with 0. With `n` and `beta` 1 it is [`super::hysteresis::Hysteresis`].
+/// and none with 0. With `n` and `beta` 1 it is [`Hysteresis`].
 #[derive(Clone, Copy, Debug)]
 pub struct BoucWen;
 
@@ -94,7 +94,8 @@ fn slope(share: f64, n: f64, beta: f64) -> (f64, f64) {
 }
 
 /// The share of the force, positive in the direction of motion, after a `way` in units of `l`: the slope and its derivative
-/// at the begin, integrated exactly (Rosenbrock's method of second order; exact for `n` and `beta` 1).
+/// at the begin, integrated exactly (Rosenbrock's method of second order; exact for `n` and `beta` 1
+/// from shares above [`LEAST`]).
 #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
 fn bent(share: f64, way: f64, n: f64, beta: f64) -> f64 {
@@ -106,18 +107,18 @@ fn bent(share: f64, way: f64, n: f64, beta: f64) -> f64 {
     if bent < -1.0 { -1.0 } else { bent }
 }
 
-/// States: the share of the force, -1..1, and the direction of the last slide (0 before the first motion).
+/// The states of [`Hysteresis`].
 impl Memory for BoucWen {
     fn states(&self) -> usize {
-        2
+        Hysteresis.states()
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state.fill(sign(velocity));
+    fn start(&self, p: &[f64], velocity: f64, state: &mut [f64]) {
+        Hysteresis.start(p, velocity, state);
     }
 
-    fn memory(&self, _p: Parameters<'_>) -> f64 {
-        BEGIN_OF_STEP
+    fn memory(&self, p: Parameters<'_>) -> f64 {
+        Memory::memory(&Hysteresis, p)
     }
 
     fn recall(
@@ -133,26 +134,12 @@ impl Memory for BoucWen {
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        let (share, direction) = state.split_at_mut(taken.sliding.len());
-        for (i, moved) in taken.displacement.iter().enumerate() {
-            // What an axis at rest seems to move is noise, or the vibration of its contact.
-            if taken.sliding[i] > 0.0 && *moved != 0.0 {
-                let to = moved.signum();
-                let way = moved.abs() / p.get(1)[i];
-                share[i] = to * bent(to * share[i], way, p.get(2)[i], p.get(3)[i]);
-                direction[i] = to;
-            }
-        }
+        let turned = |i: usize, share, way| bent(share, way, p.get(2)[i], p.get(3)[i]);
+        turn(p, taken, state, turned);
     }
 
-    /// Along the branch that it is on, either way: noise is no reversal.
     fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
-        let (share, direction) = state.split_at_mut(displacement.len());
-        for (i, dx) in displacement.iter().enumerate() {
-            let slope = slope(direction[i] * share[i], p.get(2)[i], p.get(3)[i]).0;
-            let moved = direction[i].abs() * slope * dx / p.get(1)[i];
-            share[i] = (share[i] + moved).clamp(-1.0, 1.0);
-        }
+        follow(p, displacement, state, |i, share| slope(share, p.get(2)[i], p.get(3)[i]).0);
     }
 }
 

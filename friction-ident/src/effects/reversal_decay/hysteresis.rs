@@ -95,24 +95,44 @@ impl Memory for Hysteresis {
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        let (share, direction) = state.split_at_mut(taken.sliding.len());
-        for (i, moved) in taken.displacement.iter().enumerate() {
-            // What an axis at rest seems to move is noise, or the vibration of its contact.
-            if taken.sliding[i] > 0.0 && *moved != 0.0 {
-                let to = moved.signum();
-                share[i] = to + (share[i] - to) * (-moved.abs() / p.get(1)[i]).exp();
-                direction[i] = to;
-            }
-        }
+        turn(p, taken, state, |_, share, way| 1.0 + (share - 1.0) * (-way).exp());
     }
 
-    /// Along the branch that it is on, either way: noise is no reversal.
     fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
-        let (share, direction) = state.split_at_mut(displacement.len());
-        for (i, dx) in displacement.iter().enumerate() {
-            let slope = direction[i].abs() - share[i] * direction[i];
-            share[i] = (share[i] + slope * dx / p.get(1)[i]).clamp(-1.0, 1.0);
+        follow(p, displacement, state, |_, share| 1.0 - share);
+    }
+}
+
+/// Takes a piece into the state: `turned` is the share in the direction of motion after a way in units of the length.
+pub(super) fn turn(
+    p: Parameters<'_>,
+    taken: &Taken<'_>,
+    state: &mut [f64],
+    turned: impl Fn(usize, f64, f64) -> f64,
+) {
+    let (share, direction) = state.split_at_mut(taken.sliding.len());
+    for (i, moved) in taken.displacement.iter().enumerate() {
+        // What an axis at rest seems to move is noise, or the vibration of its contact.
+        if taken.sliding[i] > 0.0 && *moved != 0.0 {
+            let to = moved.signum();
+            share[i] = to * turned(i, to * share[i], moved.abs() / p.get(1)[i]);
+            direction[i] = to;
         }
+    }
+}
+
+/// Follows an observer along the branch that it is on, either way, as noise is no reversal: `slope` is that of the share
+/// in the direction of motion.
+pub(super) fn follow(
+    p: Parameters<'_>,
+    displacement: &[f64],
+    state: &mut [f64],
+    slope: impl Fn(usize, f64) -> f64,
+) {
+    let (share, direction) = state.split_at_mut(displacement.len());
+    for (i, dx) in displacement.iter().enumerate() {
+        let slope = direction[i].abs() * slope(i, direction[i] * share[i]);
+        share[i] = (share[i] + slope * dx / p.get(1)[i]).clamp(-1.0, 1.0);
     }
 }
 

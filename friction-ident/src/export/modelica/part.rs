@@ -179,41 +179,13 @@ impl Part {
             "frictional-memory" => {
                 Self { level_velocity: "delay(v, {tau_L})".into(), ..Self::default() }
             }
-            "frictional-memory:lag" => Self {
-                level_velocity: "{}_w".into(),
-                declared: vec!["Real {}_w \"speed that the level follows\";".into()],
-                initial: vec!["{}_w = abs(v);".into()],
-                equations: vec!["{tau_L}*der({}_w) = abs(v) - {}_w;".into()],
-                ..Self::default()
-            },
-            "frictional-memory:whole" => Self {
-                level_velocity: "{}_w".into(),
-                level: "{F_w}*{}_w".into(),
-                declared: vec!["Real {}_w \"speed that friction follows\";".into()],
-                initial: vec!["{}_w = abs(v);".into()],
-                equations: vec!["{tau_L}*der({}_w) = abs(v) - {}_w;".into()],
-                ..Self::default()
-            },
+            "frictional-memory:lag" => lagging(""),
+            "frictional-memory:whole" => lagging("{F_w}*{}_w"),
             "reversal-decay" => reversal(),
-            "reversal-decay:hysteresis" => Self {
-                level: "{F_h}*@s*{}_h".into(),
-                reads_sliding: true,
-                declared: vec!["Real {}_h \"share of the force, -1..1\";".into()],
-                initial: vec!["{}_h = sign(v);".into()],
-                equations: vec!["der({}_h) = if slides then (v - {}_h*abs(v))/{l} else 0;".into()],
-                ..Self::default()
-            },
-            "reversal-decay:bouc-wen" => Self {
-                level: "{F_h}*@s*{}_h".into(),
-                reads_sliding: true,
-                declared: vec!["Real {}_h \"share of the force, -1..1\";".into()],
-                initial: vec!["{}_h = sign(v);".into()],
-                equations: vec![
-                    "der({}_h) = if slides then v*(1 - abs({}_h)^{n}*(1 - {beta} + {beta}*sign({}_h*v)))/{l} else 0;"
-                        .into(),
-                ],
-                ..Self::default()
-            },
+            "reversal-decay:hysteresis" => hysteresis("v - {}_h*abs(v)"),
+            "reversal-decay:bouc-wen" => {
+                hysteresis("v*(1 - abs({}_h)^{n}*(1 - {beta} + {beta}*sign({}_h*v)))")
+            }
             "backlash" => gap_without_load(),
             "motor-gain" => drive("{g}*@in"),
             "saturation" => drive("max(-{u_max}, min({u_max}, @in))"),
@@ -344,6 +316,30 @@ fn bond() -> Part {
             "{}_b = pre({}_left) + (1 - pre({}_left))*dwell/(dwell + {gamma});".into(),
             "when not slides then\n  {}_left = {}_b*@hump;\nend when;".into(),
         ],
+        ..Part::default()
+    }
+}
+
+/// A level that follows the speed with a lag, and what is added to it.
+fn lagging(level: &str) -> Part {
+    Part {
+        level_velocity: "{}_w".into(),
+        level: level.into(),
+        declared: vec!["Real {}_w \"speed that friction follows\";".into()],
+        initial: vec!["{}_w = abs(v);".into()],
+        equations: vec!["{tau_L}*der({}_w) = abs(v) - {}_w;".into()],
+        ..Part::default()
+    }
+}
+
+/// A force beside friction that turns around over `{l}`; `goes` is its share's slope times the velocity.
+fn hysteresis(goes: &str) -> Part {
+    Part {
+        level: "{F_h}*@s*{}_h".into(),
+        reads_sliding: true,
+        declared: vec!["Real {}_h \"share of the force, -1..1\";".into()],
+        initial: vec!["{}_h = sign(v);".into()],
+        equations: vec![format!("der({{}}_h) = if slides then ({goes})/{{l}} else 0;")],
         ..Part::default()
     }
 }
