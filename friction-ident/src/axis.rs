@@ -36,6 +36,8 @@ pub enum Quantity {
     Drag,
     /// Force per length.
     Stiffness,
+    /// A share per force.
+    PerForce,
     /// Angle or phase.
     Angle,
     /// Temperature difference.
@@ -99,6 +101,8 @@ impl Effort {
             (Quantity::Stiffness, true, false) => "V/rad",
             (Quantity::Stiffness, false, true) => "A/m",
             (Quantity::Stiffness, false, false) => "A/rad",
+            (Quantity::PerForce, true, _) => "1/V",
+            (Quantity::PerForce, false, _) => "1/A",
             _ => axis.unit(quantity),
         }
     }
@@ -122,6 +126,7 @@ impl Axis {
             Quantity::Damping => ("N s/m", "N m s/rad"),
             Quantity::Drag => ("N s^2/m^2", "N m s^2/rad^2"),
             Quantity::Stiffness => ("N/m", "N m/rad"),
+            Quantity::PerForce => ("1/N", "1/(N m)"),
             Quantity::Angle => ("rad", "rad"),
             Quantity::Temperature => ("K", "K"),
         };
@@ -143,6 +148,7 @@ impl Axis {
             Quantity::Length | Quantity::Velocity => length,
             Quantity::Mass | Quantity::Damping | Quantity::Stiffness => force / length,
             Quantity::Drag => force / (length * length),
+            Quantity::PerForce => 1.0 / force,
             Quantity::One
             | Quantity::Time
             | Quantity::Frequency
@@ -172,6 +178,7 @@ mod tests {
                 Quantity::Damping,
                 Quantity::Drag,
                 Quantity::Stiffness,
+                Quantity::PerForce,
             ] {
                 for axis in [Axis::Linear, Axis::Rotary] {
                     let unit = effort.unit(axis, quantity);

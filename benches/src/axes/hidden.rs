@@ -40,6 +40,12 @@ pub enum Hidden {
     Delay,
     /// The largest force; what it cuts off the largest one needed, as a share.
     Saturation,
+    /// The drive gives more to one side than to the other; half difference of the gains, of their mean.
+    GainBySide,
+    /// The drive gives less of a large command, by its square; share lost of the largest one needed.
+    GainByCurrent,
+    /// The drive's gain has a sine along the stroke, 1.6 to 8 periods; amplitude, of the mean gain.
+    GainAlongStroke,
     /// Drag with the square of the speed; at full speed, of the Coulomb level.
     Drag,
     /// A spring; at the end of the stroke, of the Coulomb level.
@@ -80,6 +86,7 @@ impl Hidden {
             Self::Delay => (0.4, 0.01, 1.6),
             Self::Saturation => (0.15, 0.005, 0.7),
             Self::Asymmetry | Self::ViscosityByDirection => (0.2, 0.002, 0.9),
+            Self::GainBySide | Self::GainByCurrent | Self::GainAlongStroke => (0.1, 1e-3, 0.6),
             Self::Jitter => (0.1, 0.002, 0.4),
             Self::Dropped => (0.03, 1e-3, 0.3),
             Self::WrongStamps => (0.05, 1e-3, 0.8),
@@ -90,6 +97,15 @@ impl Hidden {
 
     /// Whether it lies between command and force, so that a measured force does not show it.
     pub fn needs_command(self) -> bool {
-        matches!(self, Self::Lag | Self::SecondOrderLag | Self::Delay | Self::Saturation)
+        matches!(
+            self,
+            Self::Lag
+                | Self::SecondOrderLag
+                | Self::Delay
+                | Self::Saturation
+                | Self::GainBySide
+                | Self::GainByCurrent
+                | Self::GainAlongStroke
+        )
     }
 }

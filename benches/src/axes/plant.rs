@@ -40,6 +40,8 @@ pub struct Plant<'a> {
     /// Random numbers 0..1 of the law.
     draw: [f64; 6],
     end: f64,
+    /// Largest command that the machine alone needs.
+    peak: f64,
     drive: Drive,
     body: Body,
     second: Option<(Body, Joint)>,
@@ -95,6 +97,7 @@ impl<'a> Plant<'a> {
             size,
             draw,
             end: machine.wanted.len() as f64 * machine.control_interval(),
+            peak,
             drive,
             body: Body::at(0.0, (1.0 - part) * machine.mass),
             second,
@@ -202,6 +205,22 @@ impl<'a> Plant<'a> {
         coulomb * (1.0 + part).max(0.05)
     }
 
+    /// Share of the force that the drive was asked for and gives at `x`.
+    fn gain(&self, force: f64, x: f64) -> f64 {
+        let (size, draw) = (self.size, &self.draw);
+        match self.hidden {
+            Hidden::GainBySide if (force > 0.0) == (draw[0] < 0.5) => 1.0 + size,
+            Hidden::GainBySide => 1.0 - size,
+            Hidden::GainByCurrent => (1.0 - size * (force / self.peak).powi(2)).max(0.1),
+            Hidden::GainAlongStroke => {
+                // The stroke lies to either side of 0.
+                let wave = 2.0 * self.machine.stroke / (1.6 * 5f64.powf(draw[0]));
+                1.0 + size * (TAU * (x / wave + draw[1])).sin()
+            }
+            _ => 1.0,
+        }
+    }
+
     fn warmth(&self, t: f64) -> f64 {
         (-t / (self.end * (0.12 + 0.4 * self.draw[1]))).exp()
     }
@@ -251,8 +270,9 @@ impl<'a> Plant<'a> {
 
     /// A step of the integrator under `command`.
     pub fn step(&mut self, command: f64, t: f64) {
-        let drive = self.drive.follow(command, STEP);
         let middle = self.body.middle(STEP);
+        let drive = self.drive.follow(command, STEP);
+        let drive = drive * self.gain(drive, middle);
         let viscous = self.viscous(t);
         let mut push = drive - self.resistance(middle, t);
         let mut share = 1.0;

@@ -1,7 +1,7 @@
 //! Memories along a measured motion: one plant, sample after sample.
 
 use super::{MeasuredMotion, Walk};
-use crate::effects::{Memory, Parameters, Past, Recalled, Slot, Taken};
+use crate::effects::{Begun, Memory, Parameters, Past, Recalled, Slot, Taken};
 use crate::model::ModelEffect;
 
 /// Time at rest so far at every sample; while the axis slides, the length of its last rest.
@@ -38,7 +38,8 @@ impl Walk<'_> {
         for segment in self.motion.segments.clone().iter().filter(|s| !s.is_empty()) {
             let first = segment.start;
             let mut state = vec![0.0; memory.states()];
-            memory.start(term.values(), self.motion.velocity[first], &mut state);
+            let begun = Begun { velocity: self.motion.velocity[first], came: None };
+            memory.start(term.values(), &begun, &mut state);
             let mut past = Past::new(1, memory.memory(p));
             past.start(0, self.motion.time[first], self.motion.velocity[first], 0.0);
             for k in segment.clone() {

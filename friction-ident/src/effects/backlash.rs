@@ -3,8 +3,8 @@
 mod two_mass;
 
 use super::{
-    About, AsFound, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Refused, Slot,
-    Taken,
+    About, AsFound, Begun, Came, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
+    Refused, Slot, Taken,
 };
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
@@ -92,8 +92,12 @@ impl Memory for Backlash {
         1
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state[0] = 0.5 * sign(velocity);
+    fn start(&self, p: &[f64], begun: &Begun, state: &mut [f64]) {
+        state[0] = match begun.came {
+            // From the other side at the last reversal.
+            Some(Came { way, .. }) => (way / p[1] - 0.5 * sign(way)).clamp(-0.5, 0.5),
+            None => 0.5 * sign(begun.velocity),
+        };
     }
 
     fn recall(

@@ -106,6 +106,23 @@ fn damp_block<const W: usize>(
     }
 }
 
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+fn take_block<const W: usize>(
+    at: usize,
+    p: Parameters<'_>,
+    count: usize,
+    position: &[f64],
+    of: &[f64],
+    from: &mut [f64],
+) {
+    let (sum, _) = sums::<W>(p, count, at, position);
+    let (of, from) = (&of[at..at + W], &mut from[at..at + W]);
+    for i in 0..W {
+        from[i] -= sum[i] * of[i];
+    }
+}
+
 vectorised! {
     /// Adds the sum of `count` cosines.
     pub(super) fn add(p: Parameters<'_>, count: usize, position: &[f64], level: &mut [f64]) {
@@ -120,6 +137,17 @@ vectorised! {
         level: &mut [f64],
     ) {
         in_blocks!(level.len(), add_with_slopes_block(p, count, position, level));
+    }
+
+    /// Takes the sum as a share `of` something from another.
+    pub(super) fn take(
+        p: Parameters<'_>,
+        count: usize,
+        position: &[f64],
+        of: &[f64],
+        from: &mut [f64],
+    ) {
+        in_blocks!(from.len(), take_block(p, count, position, of, from));
     }
 
     /// A damping that is the sum.

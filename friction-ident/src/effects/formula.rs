@@ -250,7 +250,7 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
     })
 }
 
-const QUANTITIES: [Quantity; 11] = [
+const QUANTITIES: [Quantity; 12] = [
     Quantity::One,
     Quantity::Force,
     Quantity::Length,
@@ -261,6 +261,7 @@ const QUANTITIES: [Quantity; 11] = [
     Quantity::Damping,
     Quantity::Drag,
     Quantity::Stiffness,
+    Quantity::PerForce,
     Quantity::Temperature,
 ];
 

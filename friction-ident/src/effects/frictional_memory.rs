@@ -3,7 +3,7 @@
 mod whole;
 
 use super::{
-    About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, Begun, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
@@ -160,8 +160,8 @@ impl Memory for Lagged {
         1
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state[0] = velocity.abs();
+    fn start(&self, _p: &[f64], begun: &Begun, state: &mut [f64]) {
+        state[0] = begun.velocity.abs();
     }
 
     fn recall(

@@ -36,7 +36,9 @@ pub struct Library {
 impl Default for Library {
     fn default() -> Self {
         let mut library = Self::builtin();
-        library.effects.retain(|effect| effect.shows_in_force());
+        library.effects.retain(|effect| {
+            effect.shows_in_force() || effect.forms().iter().any(|form| form.shows_in_force())
+        });
         library
     }
 }

@@ -12,6 +12,24 @@ pub fn since_begin(begin: f64, now: f64) -> f64 {
     (now - begin).max(0.0)
 }
 
+/// How a lane begins, as a [`Memory`] sees it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Begun {
+    /// Velocity, m/s or rad/s.
+    pub velocity: f64,
+    /// How it came there; nothing where nobody knows, as where a recording begins.
+    pub came: Option<Came>,
+}
+
+/// The motion before a begin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Came {
+    /// Way since the last reversal, m or rad: positive forth, negative back.
+    pub way: f64,
+    /// Time at rest so far, s, 0 in motion; nothing where it has rested since the begin of the recording.
+    pub rested: Option<f64>,
+}
+
 /// Shapes what the friction level sees, from a state of its own.
 pub trait Memory: Sync + Send {
     /// State variables per lane.
@@ -19,8 +37,8 @@ pub trait Memory: Sync + Send {
         0
     }
 
-    /// State of one lane that starts with `velocity`.
-    fn start(&self, _p: &[f64], _velocity: f64, _state: &mut [f64]) {}
+    /// State of one lane at its begin.
+    fn start(&self, _p: &[f64], _begun: &Begun, _state: &mut [f64]) {}
 
     /// Longest time, s, over which it must know the velocity.
     fn memory(&self, _p: Parameters<'_>) -> f64 {

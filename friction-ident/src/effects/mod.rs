@@ -71,7 +71,7 @@ pub use element::{Balance, Correction, Element, Leg, Onset, Response, Step};
 pub use flexible::{Before, Begin};
 pub use lanes::{Motion, Parameters, Smooth, broadcast};
 pub use library::{Library, UnknownEffect};
-pub use memory::{Memory, Recalled, Sampled, Taken};
+pub use memory::{Begun, Came, Memory, Recalled, Sampled, Taken};
 pub use own::Own;
 pub use past::Past;
 pub use search::{Periodic, Repeats, Trials};

@@ -1,4 +1,9 @@
-//! Motor gain: the force constant is not what the data sheet says.
+//! Motor gain: the force constant is not what the data sheet says, or not the same everywhere.
+
+mod current;
+mod direction;
+mod ripple;
+mod stroke;
 
 use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
@@ -6,9 +11,13 @@ use crate::effects::CDynamics;
 
 /// `F = g u`.
 ///
-/// All forces of the model scale with it: without a known mass it is not identifiable.
+/// All forces of the model scale with it: without a known mass it is not identifiable. Its forms, which change with the
+/// force or along the stroke, are.
 #[derive(Clone, Copy, Debug)]
 pub struct MotorGain;
+
+static FORMS: [&dyn Effect; 4] =
+    [&direction::Direction, &current::Current, &stroke::Stroke, &ripple::Ripple];
 
 static ABOUT: About = About {
     name: "motor-gain",
@@ -23,6 +32,10 @@ static ABOUT: About = About {
 impl Effect for MotorGain {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
     }
 
     fn c_dynamics(&self) -> Option<CDynamics> {
@@ -67,13 +80,24 @@ mod tests {
     use super::super::Past;
     use super::*;
 
+    /// What becomes of `commands`; the inverse is to give them back.
+    pub(super) fn through(effect: &dyn Drive, p: &[f64], commands: &[f64]) -> Vec<f64> {
+        let (lanes, past) = (commands.len(), Past::default());
+        let values: Vec<f64> = p.iter().flat_map(|value| vec![*value; lanes]).collect();
+        let zeros = vec![0.0; lanes];
+        let step = Advance { duration: &vec![1e-3; lanes], end: &zeros, past: &past };
+        let mut force = commands.to_vec();
+        effect.advance(Parameters::new(&values, lanes), &step, &mut [], &mut force);
+        let mut back = force.clone();
+        effect.invert(p, &zeros, &mut back);
+        for (back, command) in back.iter().zip(commands) {
+            assert!((back - command).abs() <= 1e-12 * command.abs(), "{back} {command}");
+        }
+        force
+    }
+
     #[test]
     fn the_inverse_undoes_the_gain() {
-        let (mut force, past) = ([20.0], Past::default());
-        let step = Advance { duration: &[1e-3], end: &[0.0], past: &past };
-        MotorGain.advance(Parameters::new(&[1.25], 1), &step, &mut [], &mut force);
-        assert_eq!(force, [25.0]);
-        MotorGain.invert(&[1.25], &[0.0], &mut force);
-        assert_eq!(force, [20.0]);
+        assert_eq!(through(&MotorGain, &[1.25], &[20.0]), [25.0]);
     }
 }

@@ -6,11 +6,13 @@ mod hysteresis;
 
 use super::memory::{BEGIN_OF_STEP, since_begin};
 use super::ripple::LEADS;
-use super::{About, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken};
+use super::{
+    About, Begun, Came, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+};
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
 use crate::effects::c_dynamics::PAST;
-use crate::simd::{exp, vectorised};
+use crate::simd::{exp, sign, vectorised};
 
 /// `level += F_r exp(-|distance since the reversal| / l)`.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +45,7 @@ impl Effect for ReversalDecay {
             states: 2,
             helpers: &[PAST],
             slow: "1e-9",
-            start: "{s0} = DBL_MAX;\n{s1} = sign(velocity);",
+            start: "{s0} = velocity == 0.0 ? 0.0 : DBL_MAX;\n{s1} = sign(velocity);",
             recall: "{
     const double ahead = fmax(m->when - m->slow.time[m->slow.end - 1], 0.0) * fabs(m->predicted);
     const double going = m->predicted == 0.0 ? m->drive : m->predicted;
@@ -79,8 +81,15 @@ impl Memory for ReversalDecay {
         2
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state.copy_from_slice(&[FAR, crate::simd::sign(velocity)]);
+    fn start(&self, _p: &[f64], begun: &Begun, state: &mut [f64]) {
+        let far = if begun.velocity == 0.0 { 0.0 } else { FAR };
+        let (since, direction) = match begun.came {
+            Some(Came { way, .. }) => (way.abs().min(FAR), sign(way)),
+            // Whence an axis came that a recording finds at rest nobody knows: most often to an end of its way, where its
+            // first motion is a reversal.
+            None => (far, sign(begun.velocity)),
+        };
+        state.copy_from_slice(&[since, direction]);
     }
 
     fn memory(&self, _p: Parameters<'_>) -> f64 {

@@ -1,9 +1,10 @@
 //! Rising static friction: the longer the rest, the harder the breakaway.
 
 mod ageing;
+mod healing;
 
 use super::{
-    About, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, Begun, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
 };
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
@@ -54,7 +55,7 @@ static BOND_ABOUT: About = About {
     reference: REFERENCE,
 };
 static BOND: Bond = Bond;
-static FORMS: [&dyn Effect; 2] = [&BOND, &ageing::Ageing];
+static FORMS: [&dyn Effect; 3] = [&BOND, &ageing::Ageing, &healing::Healing];
 
 impl Effect for RisingStaticFriction {
     fn about(&self) -> &'static About {
@@ -128,8 +129,8 @@ impl Memory for Bond {
         3
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state.copy_from_slice(&[1.0, 1.0, f64::from(u8::from(velocity != 0.0))]);
+    fn start(&self, _p: &[f64], begun: &Begun, state: &mut [f64]) {
+        state.copy_from_slice(&[1.0, 1.0, f64::from(u8::from(begun.velocity != 0.0))]);
     }
 
     fn recall(

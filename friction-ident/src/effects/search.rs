@@ -31,6 +31,8 @@ pub enum Repeats {
     Force,
     /// An error of what the sensor shows, along the stroke.
     Sensor,
+    /// A share of the force of the drive, along the stroke.
+    Gain,
     /// A force on the moving mass, over time.
     ForceOverTime,
 }
@@ -151,7 +153,9 @@ mod tests {
             .filter(|effect| periodic(**effect).is_some())
             .map(|effect| effect.about().name)
             .collect();
-        assert_eq!(found, ["ripple", "ripple:harmonics", "ripple:direction", "encoder"]);
+        let expected =
+            ["ripple", "ripple:harmonics", "ripple:direction", "motor-gain:ripple", "encoder"];
+        assert_eq!(found, expected);
         // Asked for its law alone, the plain ripple would be recognised as well, and nothing else.
         let by_law = ALL.iter().filter(|effect| repeats_by_law(**effect).is_some());
         let by_law: Vec<&str> = by_law.map(|effect| effect.about().name).collect();

@@ -21,7 +21,8 @@ const RANKED_ON: usize = 3_000;
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
 const KEPT: usize = 4;
-/// Fewest periods in a stroke or a recording: fewer are no wave but a profile.
+/// Fewest periods in a stroke or a recording: fewer are no wave but a profile. A gain may have fewer: poles can be
+/// nearly as long as the stroke, and its profile is no friction and no spring.
 const LEAST_PERIODS: f64 = 3.0;
 
 /// The predictor of a recording with the instants that it counts.
@@ -116,7 +117,7 @@ impl FrictionFamily {
         if let Some(law) = self.periodic(term).filter(|law| law.ranked) {
             // A fit moves a period by more than the half of a line that lies between two of these.
             let longest = self.extent_of(law) / LEAST_PERIODS;
-            let short = |shape: &Vec<f64>| shape[0] <= longest;
+            let short = |shape: &Vec<f64>| law.of == Repeats::Gain || shape[0] <= longest;
             return self.shapes(term).into_iter().step_by(2).filter(short).collect();
         }
         let shapes: Vec<&TermParameter> =
@@ -204,6 +205,7 @@ impl Ahead for View<'_> {
         let law = self.family.periodic(term).filter(|law| law.ranked)?;
         let wave = match law.of {
             Repeats::Force => Wave::Force,
+            Repeats::Gain => Wave::Gain,
             Repeats::Sensor => Wave::Sensor,
             Repeats::ForceOverTime => Wave::ForceOverTime,
         };

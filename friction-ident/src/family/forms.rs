@@ -5,6 +5,7 @@ use missing_physics::report::{NamedValue, Refusal};
 use missing_physics::{Fitted, ModelFamily};
 
 use super::FrictionFamily;
+use crate::axis::Quantity;
 use crate::effects::{Along, AsFound, Before, Effect, Refused, SecondBody};
 
 /// Share of the mass that a second body begins with.
@@ -245,6 +246,9 @@ impl FrictionFamily {
                     count: self.position_deviation() * 12.0f64.sqrt(),
                     give: self.give(model),
                 };
+                if effect.gives(found.values, 0.0).is_some() && found.give <= found.count {
+                    return Some((*term, self.rigid(effect, &found)));
+                }
                 let Refused { name, value, limit, unit_of, meaning } = effect.refused(&found)?;
                 let unit = effect.about().parameter(unit_of).map_or("", |k| {
                     self.effort.unit(self.axis, effect.about().parameters[k].quantity)
@@ -258,6 +262,18 @@ impl FrictionFamily {
                 Some((*term, refusal))
             })
         })
+    }
+
+    /// Why a contact is none that gives no more than a count: it is turned around over twice that, within the half counts
+    /// on either side of the readings at both ends.
+    fn rigid(&self, effect: &dyn Effect, found: &AsFound<'_>) -> Refusal {
+        let unit = self.axis.unit(Quantity::Length).to_owned();
+        Refusal::NotThatEffect {
+            effect: effect.about().name.to_owned(),
+            value: NamedValue { name: "give".into(), value: found.give, unit },
+            limit: found.count,
+            meaning: "it gives no more than a count of the position before it slides".into(),
+        }
     }
 
     /// How far the contact of a model gives before it slides; 0 without one.
@@ -319,7 +335,6 @@ mod tests {
     use missing_physics::{Channel, Hold, Recording, TermParameter};
 
     use super::*;
-    use crate::axis::Quantity;
     use crate::effects::{About, Begin, Library, Parameter};
     use crate::family::Options;
     use crate::family::hold::HoldChoice;

@@ -159,10 +159,16 @@ impl Limits {
             Quantity::Stiffness => Size { rms: self.stroke, most: self.stroke },
             Quantity::Mass => self.acceleration,
             Quantity::Force => Size { rms: 1.0, most: 1.0 },
+            Quantity::PerForce => Size {
+                rms: self.force.rms * self.force.rms,
+                most: self.force.most * self.force.rms,
+            },
             Quantity::Time => return (0.0, parameter.high, self.interval),
             _ => {
                 let (low, high) = parameter.range(self.axis);
-                return (low, high, parameter.typical(self.axis));
+                let typical = parameter.typical(self.axis);
+                // A fit measures its steps by it.
+                return (low, high, if typical == 0.0 { 0.1 * high } else { typical });
             }
         };
         let upper = 2.0 * self.force.most / per.rms;
@@ -224,7 +230,7 @@ fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
 /// bandwidth, in slow motion.
 pub fn periods(prepared: &Prepared, length: f64, (term, law): (&Term, Periodic)) -> Vec<Vec<f64>> {
     let slow = match law.of {
-        Repeats::Force | Repeats::Sensor => {
+        Repeats::Force | Repeats::Gain | Repeats::Sensor => {
             quantile(&prepared.sample(&prepared.velocity), 0.1).max(prepared.rest_speed)
         }
         // As time runs.

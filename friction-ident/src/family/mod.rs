@@ -477,7 +477,7 @@ impl FrictionFamily {
     /// Length of what a law repeats itself along, m, rad or s.
     fn extent_of(&self, law: Periodic) -> f64 {
         match law.of {
-            Repeats::Force | Repeats::Sensor => self.stroke.1 - self.stroke.0,
+            Repeats::Force | Repeats::Gain | Repeats::Sensor => self.stroke.1 - self.stroke.0,
             Repeats::ForceOverTime => {
                 let moment = |extent| self.extent(extent).unwrap_or_default();
                 moment(Extent::RecordingEnd) - moment(Extent::RecordingBegin)
@@ -581,6 +581,7 @@ impl ModelFamily for FrictionFamily {
     ) -> Vec<Vec<Vec<f64>>> {
         match self.periodic(term) {
             Some(Periodic { of: Repeats::Sensor, .. }) => self.encoders(model, shapes),
+            Some(Periodic { of: Repeats::Gain, .. }) => self.gains(shapes),
             Some(Periodic { columns: Some(columns), .. }) => self.repeated(columns, shapes),
             _ => shapes
                 .par_iter()

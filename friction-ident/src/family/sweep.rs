@@ -42,6 +42,18 @@ impl FrictionFamily {
         self.sweep(periods, |_, wave| columns(wave))
     }
 
+    /// Columns of a gain of the drive of these periods: what of its force it brings besides.
+    pub(super) fn gains(&self, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
+        let drive = &self.prepared.force;
+        self.sweep(periods, |_, wave| {
+            let pairs = || wave.iter().zip(drive);
+            vec![
+                pairs().map(|((sin, _), drive)| -drive * sin).collect(),
+                pairs().map(|((_, cos), drive)| -drive * cos).collect(),
+            ]
+        })
+    }
+
     /// Columns of encoders whose errors have these periods: the inertia of a motion that there is not. The
     /// friction that such a motion feigns is left to the refinement after the screening.
     pub(super) fn encoders(&self, model: &Fitted, periods: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
@@ -110,6 +122,26 @@ mod tests {
                 let share = (dot(&left, &left) / dot(slow, slow)).sqrt();
                 // The friction that is left out.
                 assert!(share < 0.1, "{period}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_columns_of_a_gain_are_those_of_the_law() {
+        let made = generate(&Hide::Nothing, 2, Level::Clear).unwrap();
+        let family = FrictionFamily::new(&made.recording, &Options::default()).unwrap();
+        let model = Fitted { terms: vec![0], values: vec![1.0] };
+        let prediction = missing_physics::fit::predict(&family, &model);
+        let at = family.terms().iter().position(|term| term.name == "motor-gain:ripple").unwrap();
+        let shapes = family.shapes(at);
+        let last = &shapes[shapes.len() - 2..];
+        for (quick, shape) in
+            family.columns_of_shapes(&model, &prediction, at, last).iter().zip(last)
+        {
+            let slow = family.columns(&model, &prediction, at, shape);
+            assert_eq!(slow.len(), quick.len());
+            for (a, b) in quick.iter().zip(&slow).flat_map(|(a, b)| a.iter().zip(b)) {
+                assert!((a - b).abs() < 1e-9, "{a} {b}");
             }
         }
     }

@@ -180,7 +180,7 @@ impl Predictor {
         let moves = moved.abs() > 6.0 * self.noise.position;
         let duration = (self.time[next] - self.time[first]).max(f64::MIN_POSITIVE);
         let velocity = if moves { moved / duration } else { 0.0 };
-        let command = self.force[first];
-        Start { time: self.time[first], command, ..Start::at(self.position[first], velocity) }
+        let (command, came) = (self.force[first], self.came[first]);
+        Start { time: self.time[first], command, came, ..Start::at(self.position[first], velocity) }
     }
 }

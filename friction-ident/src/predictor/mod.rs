@@ -10,6 +10,7 @@
 //! ladder of such forces is held ready, and each model is judged at the one that suits it best; a second
 //! ladder trusts the model while the axis is at rest, where friction holds whatever else acts.
 
+mod came;
 mod follow;
 mod gain;
 mod missing;
@@ -30,6 +31,7 @@ use rayon::prelude::*;
 pub use noise::Noise;
 pub use response::Wave;
 
+use crate::effects::Came;
 use crate::model::Model;
 use gain::{Gain, gains};
 use strips::{Strip, teams};
@@ -95,6 +97,8 @@ pub struct Predictor {
     noise: Noise,
     /// Samples that only repeat the one before.
     stale: Vec<bool>,
+    /// How the axis came to each sample.
+    came: Vec<Option<Came>>,
     /// Samples that count, in order.
     counted: Vec<usize>,
     /// Strips that are simulated side by side.
@@ -125,6 +129,7 @@ impl Predictor {
             time: recording.time().to_vec(),
             hold: recording.hold(),
             segments: recording.segments().to_vec(),
+            came: Vec::new(),
             counted: Vec::new(),
             teams: Vec::new(),
             ladder,
@@ -137,6 +142,7 @@ impl Predictor {
             noise,
             stale,
         };
+        predictor.came = predictor.came();
         predictor.arrange();
         predictor.tune(mass, damping);
         (!predictor.counted.is_empty()).then_some(predictor)
@@ -205,6 +211,7 @@ impl Predictor {
             position: picked(&self.position, &parts),
             force: picked(&self.force, &parts),
             stale: picked(&self.stale, &parts),
+            came: picked(&self.came, &parts),
             counted: Vec::new(),
             teams: Vec::new(),
             gains: Vec::new(),

@@ -22,6 +22,8 @@ const MOVED: f64 = 4.0;
 pub enum Wave {
     /// A force on the mass.
     Force,
+    /// A share of the command that arrives besides.
+    Gain,
     /// An error of what the sensor shows.
     Sensor,
     /// A force on the mass that repeats over time, not along the stroke.
@@ -36,6 +38,8 @@ struct Way<'a> {
     wave: Wave,
     /// Position or time of the samples.
     along: &'a [f64],
+    /// Force of the drive from a sample on.
+    drive: &'a [f64],
     segments: &'a [Range<usize>],
     moving: &'a [bool],
     /// What the plant does between a sample and the one before.
@@ -59,8 +63,11 @@ vectorised! {
                 let acts = way.wave == Wave::Sensor || moves;
                 let at = match way.wave {
                     Wave::Sensor => way.along[k],
-                    Wave::Force | Wave::ForceOverTime => 0.5 * (way.along[k - 1] + way.along[k]),
+                    Wave::Force | Wave::Gain | Wave::ForceOverTime => {
+                        0.5 * (way.along[k - 1] + way.along[k])
+                    }
                 };
+                let drive = way.drive[k - 1];
                 let mut swing = [[0.0; BESIDE]; 2];
                 if acts {
                     for i in 0..BESIDE {
@@ -75,6 +82,7 @@ vectorised! {
                         let (force, shown) = match way.wave {
                             Wave::Sensor => (0.0, swing[j][i]),
                             Wave::Force | Wave::ForceOverTime => (-swing[j][i], 0.0),
+                            Wave::Gain => (drive * swing[j][i], 0.0),
                         };
                         if moves {
                             x[j][i] += m.way * v[j][i] + m.moved * force;
@@ -102,7 +110,7 @@ vectorised! {
 
 impl Predictor {
     /// Changes of the prediction errors by `sin(2 pi x/period)` and `cos(2 pi x/period)`, or of time in the place of
-    /// `x`, of 1 N (N m) against the motion or of 1 m (rad), for each period.
+    /// `x`, of 1 N (N m) against the motion, of all of the command or of 1 m (rad), for each period.
     pub fn responses(&self, setting: usize, wave: Wave, periods: &[f64]) -> Vec<[Vec<f32>; 2]> {
         let moving = self.moving();
         let motion: Vec<Motion> = (0..self.time.len())
@@ -113,6 +121,7 @@ impl Predictor {
         let way = Way {
             wave,
             along: if wave == Wave::ForceOverTime { &self.time } else { &self.position },
+            drive: &self.force,
             segments: &self.segments,
             moving: &moving,
             motion: &motion,
@@ -138,7 +147,7 @@ impl Predictor {
     }
 
     /// Whether the axis moves in the interval before a sample.
-    fn moving(&self) -> Vec<bool> {
+    pub(super) fn moving(&self) -> Vec<bool> {
         let mut moving = vec![false; self.time.len()];
         for segment in &self.segments {
             for (k, moving) in moving[..segment.end].iter_mut().enumerate().skip(segment.start + 1)
@@ -161,6 +170,6 @@ impl Predictor {
 }
 
 /// First and last of the samples around one, in its piece.
-fn around(segment: &Range<usize>, k: usize) -> (usize, usize) {
+pub(super) fn around(segment: &Range<usize>, k: usize) -> (usize, usize) {
     (k.saturating_sub(AROUND).max(segment.start), (k + AROUND).min(segment.end - 1))
 }

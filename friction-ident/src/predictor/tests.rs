@@ -250,26 +250,39 @@ fn of_segments_that_are_shorter_than_a_piece_whole_ones_are_taken() {
     assert!((2000..=4000).contains(&samples), "{samples}");
 }
 
-#[test]
-fn the_response_to_a_ripple_is_what_a_simulation_of_it_changes() {
-    let ripple =
-        |a: f64, b: f64| table().with("ripple", &[("a_1", a), ("b_1", b), ("l", 5e-3)]).unwrap();
+/// What the response to a wave of one period says, against what a simulation of it changes.
+fn assert_response(wave: Wave, of: impl Fn(f64, f64) -> Model, period: f64) {
     let predictor = predictor(&recording(&table(), Hold::ZeroOrder, QUIET));
     let small = 0.01;
     for setting in [1, 3] {
-        let models = [(0.0, 0.0), (small, 0.0), (0.0, small)].map(|(a, b)| (ripple(a, b), setting));
+        let models = [(0.0, 0.0), (small, 0.0), (0.0, small)].map(|(a, b)| (of(a, b), setting));
         let errors = predictor.errors(&models);
-        let response = predictor.responses(setting, Wave::Force, &[5e-3]).swap_remove(0);
+        let response = predictor.responses(setting, wave, &[period]).swap_remove(0);
         for (column, moved) in response.iter().zip(&errors[1..]) {
             let change: Vec<f64> =
                 moved.iter().zip(&errors[0]).map(|(e, old)| (e - old) / small).collect();
             let column: Vec<f64> = column.iter().map(|value| f64::from(*value)).collect();
             let product: f64 = column.iter().zip(&change).map(|(a, b)| a * b).sum();
             let cosine = product / (rms(&column) * rms(&change) * column.len() as f64);
-            assert!(cosine.abs() > 0.9, "{setting}: {cosine}");
-            assert!((rms(&column) / rms(&change) - 1.0).abs() < 0.25, "{setting}");
+            assert!(cosine.abs() > 0.9, "{wave:?} {setting}: {cosine}");
+            assert!((rms(&column) / rms(&change) - 1.0).abs() < 0.25, "{wave:?} {setting}");
         }
     }
+}
+
+#[test]
+fn the_response_to_a_ripple_is_what_a_simulation_of_it_changes() {
+    let ripple =
+        |a: f64, b: f64| table().with("ripple", &[("a_1", a), ("b_1", b), ("l", 5e-3)]).unwrap();
+    assert_response(Wave::Force, ripple, 5e-3);
+}
+
+#[test]
+fn the_response_to_a_gain_is_what_a_simulation_of_it_changes() {
+    let gain = |a: f64, b: f64| {
+        table().with("motor-gain:ripple", &[("a", a), ("b", b), ("l", 0.02)]).unwrap()
+    };
+    assert_response(Wave::Gain, gain, 0.02);
 }
 
 #[test]

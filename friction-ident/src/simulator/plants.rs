@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::SimulationError;
 use super::kernels::keep_positive;
 use super::scratch::Scratch;
-use crate::effects::{Drive, Effect, Element, Memory, Onset, Parameters, Past, Slot};
+use crate::effects::{Begun, Came, Drive, Effect, Element, Memory, Onset, Parameters, Past, Slot};
 use crate::model::Model;
 use crate::simd::sign;
 
@@ -22,6 +22,8 @@ pub struct Start {
     pub used: f64,
     /// Command of the drive up to here, N or N m.
     pub command: f64,
+    /// How it came there, if anybody knows.
+    pub came: Option<Came>,
 }
 
 impl Start {
@@ -257,7 +259,7 @@ impl Plants {
         self.position[i] = start.position;
         self.velocity[i] = start.velocity;
         self.slope[i] = 0.0;
-        self.dwell[i] = 0.0;
+        self.dwell[i] = start.came.and_then(|came| came.rested).unwrap_or(0.0);
         let slides = start.velocity != 0.0 && (self.contact.is_none() || start.used.abs() >= 1.0);
         self.sliding[i] = f64::from(u8::from(slides));
         if self.past.is_kept() {
@@ -358,7 +360,8 @@ impl Active {
     fn start(&mut self, i: usize, lanes: usize, start: &Start) {
         if let Some(memory) = self.effect.memory() {
             let mut state = vec![0.0; memory.states()];
-            memory.start(&self.parameters(i, lanes), start.velocity, &mut state);
+            let begun = Begun { velocity: start.velocity, came: start.came };
+            memory.start(&self.parameters(i, lanes), &begun, &mut state);
             scatter(&state, &mut self.memory, i, lanes);
         }
         if let Some(drive) = self.effect.drive() {

@@ -3,8 +3,8 @@
 use super::{LAGGED, SHOWS, TIME};
 use crate::axis::Quantity;
 use crate::effects::{
-    About, CDynamics, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot,
-    Taken,
+    About, Begun, CDynamics, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
+    Slot, Taken,
 };
 use crate::simd::vectorised;
 
@@ -64,8 +64,8 @@ impl Memory for Whole {
         LAGGED.states()
     }
 
-    fn start(&self, p: &[f64], velocity: f64, state: &mut [f64]) {
-        LAGGED.start(p, velocity, state);
+    fn start(&self, p: &[f64], begun: &Begun, state: &mut [f64]) {
+        LAGGED.start(p, begun, state);
     }
 
     fn recall(

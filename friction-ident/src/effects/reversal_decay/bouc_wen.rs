@@ -5,7 +5,8 @@ use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
 use crate::effects::memory::since_begin;
 use crate::effects::{
-    About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, Begun, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot,
+    Taken,
 };
 use crate::simd::{exp, ln, sign, vectorised};
 
@@ -113,8 +114,8 @@ impl Memory for BoucWen {
         Hysteresis.states()
     }
 
-    fn start(&self, p: &[f64], velocity: f64, state: &mut [f64]) {
-        Hysteresis.start(p, velocity, state);
+    fn start(&self, p: &[f64], begun: &Begun, state: &mut [f64]) {
+        Hysteresis.start(p, begun, state);
     }
 
     fn memory(&self, p: Parameters<'_>) -> f64 {

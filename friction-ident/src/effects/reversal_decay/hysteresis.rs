@@ -4,7 +4,8 @@ use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
 use crate::effects::memory::{BEGIN_OF_STEP, since_begin};
 use crate::effects::{
-    About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, Begun, CDynamics, Came, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
+    Slot, Taken,
 };
 use crate::simd::{exp, sign, vectorised};
 
@@ -74,8 +75,15 @@ impl Memory for Hysteresis {
         2
     }
 
-    fn start(&self, _p: &[f64], velocity: f64, state: &mut [f64]) {
-        state.fill(sign(velocity));
+    fn start(&self, p: &[f64], begun: &Begun, state: &mut [f64]) {
+        let (share, direction) = match begun.came {
+            // From the other side at the last reversal.
+            Some(Came { way, .. }) => {
+                (sign(way) * (1.0 - 2.0 * (-way.abs() / p[1]).exp()), sign(way))
+            }
+            None => (sign(begun.velocity), sign(begun.velocity)),
+        };
+        state.copy_from_slice(&[share, direction]);
     }
 
     fn memory(&self, _p: Parameters<'_>) -> f64 {

@@ -4,7 +4,8 @@ use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
 use crate::effects::memory::{BEGIN_OF_STEP, since_begin};
 use crate::effects::{
-    About, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, Begun, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot,
+    Taken,
 };
 use crate::simd::{exp, ln, vectorised};
 
@@ -81,8 +82,9 @@ impl Memory for Ageing {
         1
     }
 
-    fn start(&self, p: &[f64], velocity: f64, state: &mut [f64]) {
-        state[0] = if velocity == 0.0 { RESTED } else { p[1] / velocity.abs() };
+    fn start(&self, p: &[f64], begun: &Begun, state: &mut [f64]) {
+        let rested = begun.came.and_then(|came| came.rested).unwrap_or(RESTED);
+        state[0] = if begun.velocity == 0.0 { rested } else { p[1] / begun.velocity.abs() };
     }
 
     fn memory(&self, _p: Parameters<'_>) -> f64 {

@@ -34,11 +34,12 @@ static double positive(double x)
 /* Forces that resist the motion, and their slope against the velocity. */
 static void smooth_forces(Plant *m)
 {
-    const double x = m->middle, v = m->predicted, t = m->when;
+    const double x = m->middle, v = m->predicted, t = m->when, drive = m->drive;
     double force = 0.0, damping = 0.0;
     (void)x;
     (void)v;
     (void)t;
+    (void)drive;
 @SMOOTH@    m->force = force;
     m->damping = damping;
 }

@@ -176,6 +176,16 @@ impl Part {
                 equations: vec!["der({}_age) = 1 - {}_age*abs(v)/{D_c};".into()],
                 ..Self::default()
             },
+            "rising-static-friction:healing" => Self {
+                level: "{dF}*{}_h".into(),
+                reads_sliding: true,
+                declared: vec!["Real {}_h \"share that has come, 0..1\";".into()],
+                initial: vec!["{}_h = if v == 0 then {h_0} else 0;".into()],
+                equations: vec![
+                    "der({}_h) = if slides then -{}_h*abs(v)/{D_c} else (1 - {}_h)/{gamma};".into(),
+                ],
+                ..Self::default()
+            },
             "frictional-memory" => {
                 Self { level_velocity: "delay(v, {tau_L})".into(), ..Self::default() }
             }
@@ -188,6 +198,15 @@ impl Part {
             }
             "backlash" => gap_without_load(),
             "motor-gain" => drive("{g}*@in"),
+            "motor-gain:direction" => drive("@in + {dg}*abs(@in)"),
+            "motor-gain:current" => drive("@in/(1 + {c}*abs(@in))"),
+            "motor-gain:ripple" => Self {
+                smooth: "(-drive*({a}*sin(2*pi*x/{l}) + {b}*cos(2*pi*x/{l})))".into(),
+                ..Self::default()
+            },
+            "motor-gain:stroke" => {
+                Self { smooth: format!("(-({})*drive)", cosines(6)), ..along_stroke() }
+            }
             "saturation" => drive("max(-{u_max}, min({u_max}, @in))"),
             // A lag or delay of nothing is none: its equation would be singular.
             "actuator-lag" | "actuator-lag:second-order" | "input-delay"
@@ -350,7 +369,7 @@ fn reversal() -> Part {
         level_at_start: Some(""),
         reads_sliding: true,
         declared: vec![
-            "Real {}_share(start=0, fixed=true) \"what is left of the force after the last reversal\";".into(),
+            "Real {}_share(start=if @velocity > 0 or @velocity < 0 then 0 else 1, fixed=true) \"what is left of the force after the last reversal\";".into(),
             "Integer {}_last(start=if @velocity > 0 then 1 elseif @velocity < 0 then -1 else 0, fixed=true) \"direction of the last slide\";".into(),
         ],
         equations: vec![
