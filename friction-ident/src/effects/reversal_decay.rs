@@ -159,6 +159,7 @@ vectorised! {
 #[cfg(test)]
 mod tests {
     use super::super::testing::along_and_simulated;
+    use super::*;
     use crate::axis::Axis;
     use crate::driven::{MeasuredMotion, force_along};
     use crate::model::Model;
@@ -196,6 +197,20 @@ mod tests {
             let exact = -5.0 - 3.0 * (-since / 0.01).exp();
             assert!((force[k] - exact).abs() < 1e-9, "{k}: {} {exact}", force[k]);
         }
+    }
+
+    #[test]
+    fn it_begins_as_the_axis_came_there_and_at_rest_as_at_a_reversal() {
+        let state = |velocity: f64, came: Option<Came>| {
+            let mut state = [f64::NAN; 2];
+            ReversalDecay.start(&[3.0, 0.01], &Begun { velocity, came }, &mut state);
+            state
+        };
+        let came = Came { way: -0.02, rested: Some(0.0) };
+        assert_eq!(state(-0.1, Some(came)), [0.02, -1.0]);
+        assert_eq!(state(0.0, Some(Came { rested: Some(2.0), ..came })), [0.02, -1.0]);
+        assert_eq!(state(0.0, None), [0.0, 0.0]);
+        assert_eq!(state(0.1, None), [FAR, 1.0]);
     }
 
     #[test]

@@ -174,7 +174,7 @@ impl Predictor {
 
     /// Where a plant starts at a sample of a piece that goes on until `end`: at rest, unless the next samples move by
     /// more than their noise.
-    fn start(&self, first: usize, end: usize) -> Start {
+    pub(super) fn start(&self, first: usize, end: usize) -> Start {
         let next = (first + 4).min(end - 1);
         let moved = self.position[next] - self.position[first];
         let moves = moved.abs() > 6.0 * self.noise.position;

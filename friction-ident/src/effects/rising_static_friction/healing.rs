@@ -170,8 +170,10 @@ vectorised! {
 #[cfg(test)]
 mod tests {
     use super::super::tests::breakaway;
+    use super::*;
     use crate::axis::Axis;
     use crate::driven::{MeasuredMotion, force_along};
+    use crate::effects::Came;
     use crate::effects::testing::along_and_simulated;
     use crate::model::Model;
 
@@ -199,6 +201,20 @@ mod tests {
                 assert!((force[k] - exact).abs() < 4e-2, "{speed} {k}: {} {exact}", force[k]);
             }
         }
+    }
+
+    #[test]
+    fn it_begins_with_the_rest_so_far_or_with_what_is_said_of_the_recording() {
+        let lacks = |velocity: f64, came: Option<Came>| {
+            let mut state = [f64::NAN];
+            Healing.start(&[3.0, 0.4, 5e-5, 0.7], &Begun { velocity, came }, &mut state);
+            state[0]
+        };
+        let rested = |rested| Some(Came { way: 0.1, rested });
+        assert!((lacks(0.0, rested(Some(0.4))) - (-1.0f64).exp()).abs() < 1e-12);
+        assert!((lacks(0.0, rested(None)) - 0.3).abs() < 1e-12);
+        assert!((lacks(0.0, None) - 0.3).abs() < 1e-12);
+        assert!((lacks(0.1, None) - 1.0).abs() < 1e-12);
     }
 
     #[test]
