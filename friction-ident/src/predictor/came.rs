@@ -21,7 +21,7 @@ impl Predictor {
             let mut going = if first + 1 < segment.end { direction(first + 1) } else { 0.0 };
             let mut way = if going == 0.0 { 0.0 } else { going * f64::INFINITY };
             let mut rested = (going != 0.0).then_some(0.0);
-            for k in first + 1..segment.end {
+            for (k, came) in all.iter_mut().enumerate().take(segment.end).skip(first + 1) {
                 let (now, moved) = (direction(k), self.position[k] - self.position[k - 1]);
                 if now == 0.0 {
                     rested = rested.map(|time| time + self.time[k] - self.time[k - 1]);
@@ -31,7 +31,7 @@ impl Predictor {
                     way = now * (now * (before + moved)).max(0.0);
                     (going, rested) = (now, Some(0.0));
                 }
-                all[k] = Some(Came { way, rested });
+                *came = Some(Came { way, rested });
             }
         }
         all
