@@ -159,10 +159,8 @@ impl Limits {
             Quantity::Stiffness => Size { rms: self.stroke, most: self.stroke },
             Quantity::Mass => self.acceleration,
             Quantity::Force => Size { rms: 1.0, most: 1.0 },
-            Quantity::PerForce => Size {
-                rms: self.force.rms * self.force.rms,
-                most: self.force.most * self.force.rms,
-            },
+            // A motor that loses more than a third of the largest force is none that goes on pulling.
+            Quantity::PerForce => return (0.0, 0.5 / self.force.most, 0.1 / self.force.most),
             Quantity::Time => return (0.0, parameter.high, self.interval),
             _ => {
                 let (low, high) = parameter.range(self.axis);
