@@ -82,12 +82,12 @@ impl Memory for ReversalDecay {
     }
 
     fn start(&self, _p: &[f64], begun: &Begun, state: &mut [f64]) {
-        let far = if begun.velocity == 0.0 { 0.0 } else { FAR };
         let (since, direction) = match begun.came {
             Some(Came { way, .. }) => (way.abs().min(FAR), sign(way)),
             // Whence an axis came that a recording finds at rest nobody knows: most often to an end of its way, where its
             // first motion is a reversal.
-            None => (far, sign(begun.velocity)),
+            None if begun.velocity == 0.0 => (0.0, 0.0),
+            None => (FAR, sign(begun.velocity)),
         };
         state.copy_from_slice(&[since, direction]);
     }

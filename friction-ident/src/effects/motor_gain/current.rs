@@ -4,7 +4,7 @@ use crate::axis::Quantity;
 use crate::effects::{About, Advance, CDynamics, Drive, Effect, Parameter, Parameters, Slot};
 use crate::simd::vectorised;
 
-/// `F = u / (1 + c |u|)`: grows with the command without end of the search, and so can be inverted up to `1/c`.
+/// `F = u / (1 + c |u|)`: it never falls as the command grows, and no command yields more than `1/c`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Current;
 
