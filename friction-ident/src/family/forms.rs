@@ -432,6 +432,15 @@ mod tests {
         assert_eq!(most, 0.9 * mass);
         let (most, searched, _) = limit("load-friction:both", "mu", &[]);
         assert_eq!(most, searched);
+        // A drift without end is a level where the model has no other.
+        let (beside_level, searched, _) = limit("drift", "tau", &[]);
+        assert_eq!(beside_level, searched);
+        let alone = model(&family, &["mass", "viscous", "drift"], &[("m", 20.0)]);
+        let time = family.recording.time();
+        let duration = time[time.len() - 1] - time[0];
+        assert_eq!(family.limits(&alone, alone.terms[2], 2).1, duration);
+        let level = &family.terms[alone.terms[2]].parameters[0];
+        assert_eq!(family.limits(&alone, alone.terms[2], 0).1, level.upper);
         // Both bodies swing against each other, the lighter the more: what is behind damps more than it seems.
         let (alone, ..) = limit("flexible-coupling", "zeta", &[("m_L", 1e-9)]);
         assert!((alone - 0.383).abs() < 1e-6);

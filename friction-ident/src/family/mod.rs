@@ -38,7 +38,9 @@ use missing_physics::family::{Ahead, FullRate, Generic, OtherReading, sizes};
 use missing_physics::report::{Course, NamedError, Plot, Remark};
 use missing_physics::statistics::basis::{dot, gram, solve};
 use missing_physics::statistics::split::Split;
-use missing_physics::{ComparedQuantity, Coordinate, Fitted, ModelFamily, Recording, Regime, Term};
+use missing_physics::{
+    ComparedQuantity, Coordinate, Fitted, ModelFamily, Recording, Regime, Role, Term,
+};
 
 use rayon::prelude::*;
 
@@ -394,6 +396,15 @@ impl FrictionFamily {
         }
     }
 
+    /// Whether a model has a friction level that every axis has, by whatever law, or may have it in a given force.
+    fn has_level(&self, model: &Fitted) -> bool {
+        let is_level = |term: usize| {
+            let effect = self.effect(self.law_of(term).unwrap_or(term))?;
+            Some(effect.is_usual() && effect.about().slots.contains(&Slot::FrictionLevel))
+        };
+        self.given.is_some() || model.terms.iter().any(|term| is_level(*term) == Some(true))
+    }
+
     /// Noise of the measured position, m or rad.
     fn position_deviation(&self) -> f64 {
         let known = self.ahead.as_ref().map(|ahead| ahead.predictor.noise().position);
@@ -532,7 +543,7 @@ impl ModelFamily for FrictionFamily {
 
     fn shapes(&self, term: usize) -> Vec<Vec<f64>> {
         let about = &self.terms[term];
-        if about.parameters.iter().all(|p| p.role == missing_physics::Role::Amplitude) {
+        if about.parameters.iter().all(|p| p.role == Role::Amplitude) {
             return vec![Vec::new()];
         }
         if let Some(law) = self.periodic(term) {
@@ -642,6 +653,12 @@ impl ModelFamily for FrictionFamily {
         let parameter = &self.terms[term].parameters[parameter];
         let most = || {
             let effect = self.effect(term)?;
+            if effect.is_course_of_time() && !self.has_level(model) {
+                // Where nothing is left in the end a course without end is the level itself.
+                let time = self.recording.time();
+                let duration = time.last().zip(time.first()).map(|(last, first)| last - first);
+                return duration.filter(|_| parameter.role == Role::Shape);
+            }
             let place = model.terms.iter().position(|t| *t == term)?;
             let values = self.values_in_full(model, place)?;
             effect.most(&parameter.name, &values, self.mass_of(model))

@@ -6,6 +6,7 @@ use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
+use crate::ahead::refused::not_told;
 use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
@@ -147,8 +148,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let before = if k == 0 { &base } else { &rungs[k - 1] };
             gains.push(self.comparison.compare(before, rung));
         }
-        let sets = self.behind(&climb, last);
         let alike = self.in_full(self.thresholds.better.max(self.unnamed(&climb, last)));
+        let sets = self.behind(&climb, last, alike);
         let stopped = (self.stop)();
         for promise in &mut beside.promises {
             promise.leverage = promise.leverage.map(|leverage| self.in_full(leverage));
@@ -186,7 +187,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// The sets of every size, and how far each lies behind the best of them; the last model among those of its own.
-    fn behind(&self, climb: &Climb, last: &Node) -> Vec<Vec<(Vec<usize>, f64)>> {
+    fn behind(&self, climb: &Climb, last: &Node, alike: f64) -> Vec<Vec<(Vec<usize>, f64)>> {
         let base = &climb.base;
         let known = self.key(last);
         let mut all = Vec::new();
@@ -199,7 +200,16 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 continue;
             };
             let lag = |set: &Node| self.in_full(self.comparison.compare(set, first).nats);
-            all.push(sets.iter().map(|set| (Self::added(base, set), lag(set))).collect());
+            let mut lags: Vec<_> = sets.iter().map(|set| (*set, lag(set))).collect();
+            if let Some(last) = last {
+                // What would not be told if it were the best is no alternative to what is told.
+                let found = lags[0].1;
+                let told = |set: &Node| not_told(self.family, self.ahead, base, set).is_none();
+                lags.retain(|(set, lag)| {
+                    std::ptr::eq(*set, last) || lag - found >= alike || told(set)
+                });
+            }
+            all.push(lags.iter().map(|(set, lag)| (Self::added(base, set), *lag)).collect());
         }
         all
     }

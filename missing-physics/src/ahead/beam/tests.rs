@@ -440,6 +440,21 @@ fn what_the_data_cannot_tell_apart_is_ambiguous_beside_whatever_base() {
 }
 
 #[test]
+fn what_would_not_be_told_is_no_alternative_to_what_is() {
+    let thresholds = Thresholds { better: 100.0, ..Thresholds::default() };
+    let exclude = ["both", "tone"].map(str::to_owned).to_vec();
+    let settings = Settings { exclude, thresholds, ..Settings::default() };
+    for (most, alternatives) in [(0.06, 1), (0.0501, 0)] {
+        let mut plant = Plant::new(9, &[(WAVE, &[0.05])]);
+        // A twin of that size makes no sense, or may be larger than makes sense.
+        plant.most = Some((TWIN, most));
+        let found = discover(&plant, &settings, &mut ()).unwrap();
+        assert_eq!(found.added, ["wave"], "{:?}", found.remains);
+        assert_eq!(found.ambiguous.len(), alternatives, "{most}: {:?}", found.ambiguous);
+    }
+}
+
+#[test]
 fn an_effect_whose_plain_form_is_none_is_not_named_where_that_form_is_as_good() {
     let mut plant = Plant::new(5, &[(BENT, &[0.05, 0.0008])]);
     assert_eq!(found(&plant, Thresholds::default(), 1).added, [WAVE]);
