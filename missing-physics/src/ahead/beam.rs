@@ -100,6 +100,9 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     untried: BTreeSet<usize>,
     /// Effects that promised most beside the best set of some size.
     promised: BTreeSet<usize>,
+    /// Sets that were compared with the last one as simpler or less simple, with effects that every system has besides: as
+    /// many effects or not.
+    twins: Vec<Node>,
     /// Whether what leaves more than the sensors make counts for nothing: what is left beside it is not asked.
     pub all_or_nothing: bool,
 }
@@ -126,6 +129,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             tell,
             untried: BTreeSet::new(),
             promised: BTreeSet::new(),
+            twins: Vec::new(),
             all_or_nothing: false,
         }
     }

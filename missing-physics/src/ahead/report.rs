@@ -159,27 +159,18 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     }
 
     fn ambiguous(&self) -> Vec<Ambiguity> {
-        let added: Vec<usize> = self.found.added.clone();
+        let added = &self.found.added;
         let mut sets: Vec<Ambiguity> = Vec::new();
         let as_good = self.found.as_good(self.family);
+        let exchanged: Vec<_> = as_good.iter().filter_map(|set| self.exchanged(set)).collect();
         // Rivals of one and the same effect stand together.
-        for term in &added {
-            let rivals = as_good.iter().filter_map(|set| {
-                let others: Vec<usize> = set
-                    .iter()
-                    .copied()
-                    .filter(|t| !Found::is_in(added.as_slice(), *t, self.family))
-                    .collect();
-                let lacks = !Found::is_in(set, *term, self.family);
-                // Another law of a usual effect is that effect.
-                let other =
-                    others.first().filter(|other| self.family.law_of(**other) != Some(*term));
-                other.copied().filter(|_| others.len() == 1 && lacks)
-            });
+        for term in added {
             let mut terms = vec![*term];
-            for rival in rivals {
-                if !terms.contains(&rival) {
-                    terms.push(rival);
+            for (gone, rival) in &exchanged {
+                // Another law of a usual effect is that effect.
+                let other = self.family.law_of(*rival) != Some(*term);
+                if gone == term && other && !terms.contains(rival) {
+                    terms.push(*rival);
                 }
             }
             if terms.len() > 1 {
@@ -189,6 +180,23 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
             }
         }
         sets
+    }
+
+    /// The one effect that a set has in the place of one that was found, and that one; what every system has may go or
+    /// come with them.
+    fn exchanged(&self, set: &[usize]) -> Option<(usize, usize)> {
+        let added = self.found.added.as_slice();
+        let beside = |these: &[usize], those: &[usize]| -> Vec<usize> {
+            let lacks = |term: &usize| !Found::is_in(those, *term, self.family);
+            these.iter().copied().filter(lacks).collect()
+        };
+        let (mut gone, mut rivals) = (beside(added, set), beside(set, added));
+        if gone.len() != rivals.len() {
+            gone.retain(|term| !self.family.is_usual(*term));
+            rivals.retain(|term| !self.family.is_usual(*term));
+        }
+        let ([gone], [rival]) = (&gone[..], &rivals[..]) else { return None };
+        Some((*gone, *rival))
     }
 
     /// The rungs; `fits` are those above the base, along the measured motion.

@@ -186,22 +186,30 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         found
     }
 
-    /// The sets of every size, and how far each lies behind the best of them; the last model among those of its own.
+    /// The sets of every size, and how far each lies behind the best of them; the last model among those of its own, and
+    /// what differs from it by effects that every system has besides.
     fn behind(&self, climb: &Climb, last: &Node, alike: f64) -> Vec<Vec<(Vec<usize>, f64)>> {
         let base = &climb.base;
         let known = self.key(last);
+        let special = |set: &Node| {
+            let added = Self::added(base, set).into_iter();
+            added.filter(|term| !self.family.is_usual(*term)).count()
+        };
+        let last_size = Self::added(base, last).len();
         let mut all = Vec::new();
-        for (size, sets) in climb.nodes.iter().enumerate() {
-            let last = Some(last).filter(|last| Self::added(base, last).len() == size);
-            let others = sets.iter().filter(|set| last.is_none() || self.key(set) != known);
-            let sets: Vec<&Node> = last.into_iter().chain(others).collect();
+        for size in 0..climb.nodes.len().max(last_size + 1) {
+            let is_last = size == last_size;
+            let twins = self.twins.iter().filter(|set| is_last && special(set) == special(last));
+            let sets = climb.nodes.get(size).into_iter().flatten().chain(twins);
+            let others = sets.filter(|set| !is_last || self.key(set) != known);
+            let sets: Vec<&Node> = is_last.then_some(last).into_iter().chain(others).collect();
             let Some(first) = sets.iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {
                 all.push(Vec::new());
                 continue;
             };
             let lag = |set: &Node| self.in_full(self.comparison.compare(set, first).nats);
             let mut lags: Vec<_> = sets.iter().map(|set| (*set, lag(set))).collect();
-            if let Some(last) = last {
+            if is_last {
                 // What would not be told if it were the best is no alternative to what is told.
                 let found = lags[0].1;
                 let told = |set: &Node| not_told(self.family, self.ahead, base, set).is_none();

@@ -91,7 +91,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let size = Self::added(&climb.base, &other).len();
             self.note(size, &other, best, by, outcome, Some(Reason::Simpler));
             if as_good {
+                if self.is_complete(best) == self.is_complete(&other) {
+                    self.twins.push(best.clone());
+                }
                 return Some(other);
+            }
+            if is_one && !leaves_more {
+                self.twins.push(other);
             }
         }
         None

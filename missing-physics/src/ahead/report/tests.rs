@@ -181,6 +181,20 @@ fn rivals_of_one_effect_stand_together() {
         (&[PUSH, TWIN], 5.0),
     ]);
     assert_eq!(rivals, [vec!["wave", "twin"], vec!["beat", "push"]]);
+    // What every system has may come with a rival, or go with what it takes the place of.
+    let of_usual = |found: &[usize], other: &[usize]| -> Vec<Vec<String>> {
+        let mut plant = Plant::new(1, &HIDDEN);
+        plant.usual = vec![PUSH];
+        let both = both(&plant);
+        let mut sets = vec![Vec::new(); 3];
+        sets[found.len()] = vec![(found.to_vec(), 0.0), (other.to_vec(), 1.0)];
+        let rungs = both.rungs[..found.len()].to_vec();
+        let found = Found { sets, added: found.to_vec(), rungs, ..both };
+        told(&plant, found).ambiguous.into_iter().map(|set| set.effects).collect()
+    };
+    assert_eq!(of_usual(&[WAVE], &[PUSH, TONE]), [["wave", "tone"]]);
+    assert_eq!(of_usual(&[PUSH, TONE], &[WAVE]), [["tone", "wave"]]);
+    assert!(of_usual(&[WAVE], &[TONE, BEAT]).is_empty());
     // Another law of what was found is no rival of it.
     let mut plant = Plant::new(1, &HIDDEN);
     plant.laws = vec![(TWIN, WAVE)];

@@ -59,6 +59,27 @@ fn what_shows_only_beside_a_usual_effect_takes_the_place_of_one_of_as_many_param
 }
 
 #[test]
+fn what_was_asked_beside_a_usual_effect_is_an_alternative_though_it_is_two() {
+    let hidden = [(TONE, &[0.05, 5.0][..])];
+    let mut plant = Plant::new(6, &hidden);
+    plant.usual = vec![PUSH];
+    let (base, tone) = (node(&plant, &[]), node(&plant, &hidden));
+    // Whatever is left is as little as the sensors make.
+    let mut search = search(&plant, Thresholds { complete: 1e9, ..narrow() });
+    let gain = search.comparison.compare(&base, &tone);
+    let costs = || vec![(TONE, gain, base.clone())];
+    let climb = climb(&plant, vec![vec![tone.clone()]]);
+    assert!(search.simplified(&climb, &tone, &costs()).is_none());
+    let found = search.conclude(climb, &tone, (costs(), 0.0), Screened::default(), None);
+    let (last, others) = found.sets[1].split_first().unwrap();
+    assert_eq!(*last, (vec![TONE], 0.0));
+    assert!(!others.is_empty());
+    for (set, lag) in others {
+        assert!(set.len() == 2 && set[0] == PUSH && *lag > 20.0, "{set:?} {lag}");
+    }
+}
+
+#[test]
 fn the_most_promising_one_is_fitted_however_little_of_what_is_lost_it_promises() {
     let push: (usize, &[f64]) = (PUSH, &[0.05]);
     let plant = Plant::new(6, &[push, (BEAT, &[0.05])]);
