@@ -9,6 +9,10 @@ pub fn reason(decision: &Decision) -> Option<String> {
         Reason::BestOfSize => format!("the best set of {}", decision.rung),
         Reason::AsGoodWithout => "as good without".to_owned(),
         Reason::ErrorNoLower => "the prediction error is no lower with it".to_owned(),
+        Reason::NotRecurring => {
+            "what it gains is within three standard errors, and more is left than the sensors make"
+                .to_owned()
+        }
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),
         Reason::OtherLaw => {

@@ -36,6 +36,8 @@ pub enum Reason {
     AsGoodWithout,
     /// The prediction error is no lower with the effect that goes.
     ErrorNoLower,
+    /// Beside errors that are not the sensors' the effect that goes gains here and loses there.
+    NotRecurring,
     /// Chance gains as much as the effect that goes.
     Chance,
     /// The candidate has an effect in its plain form.

@@ -11,6 +11,9 @@ use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
 
+/// Standard errors that each of several effects must gain where the model with them errs more than the sensors make.
+const RECURS: f64 = 3.0;
+
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The best set, of the smallest size that is needed, from one of `known` effects on.
     pub(super) fn size(&mut self, climb: &Climb, mut best: Node, known: usize) -> Node {
@@ -57,15 +60,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             });
             let mut costs: Costs = each.collect();
             costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
-            let better = self.thresholds.better;
-            let goes = costs
-                .iter()
-                .rposition(|(_, cost, without)| cost.nats < better || !best.foretells_more(without))
-                .filter(|_| costs.len() > 1);
-            let Some(goes) = goes else { return (best, costs) };
+            let whys = costs.iter().map(|(_, cost, without)| self.why_goes(&best, *cost, without));
+            let last = whys.enumerate().filter_map(|(k, why)| Some((k, why?))).last();
+            let Some((goes, because)) = last.filter(|_| costs.len() > 1) else {
+                return (best, costs);
+            };
             let (_, cost, without) = costs.swap_remove(goes);
-            let because =
-                if cost.nats < better { Reason::AsGoodWithout } else { Reason::ErrorNoLower };
             let from = best.clone();
             self.note(
                 costs.len(),
@@ -76,6 +76,22 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 Some(because),
             );
             best = without;
+        }
+    }
+
+    /// Why an effect of a set of several is not needed, if so: what the set without it loses, and that one.
+    pub(super) fn why_goes(&self, set: &Node, cost: Difference, without: &Node) -> Option<Reason> {
+        // Errors beyond the sensors' are those of the model, and what lowers them counts only as far as it does so again and
+        // again (Q. H. Vuong, 1989).
+        let misfit = self.ahead.has_shares() && self.budget(set) > 1.0;
+        if cost.nats < self.thresholds.better {
+            Some(Reason::AsGoodWithout)
+        } else if !set.foretells_more(without) {
+            Some(Reason::ErrorNoLower)
+        } else if misfit && cost.nats < RECURS * cost.error {
+            Some(Reason::NotRecurring)
+        } else {
+            None
         }
     }
 

@@ -73,6 +73,23 @@ fn an_effect_with_which_the_error_does_not_fall_beside_others_goes_whatever_it_g
 }
 
 #[test]
+fn beside_errors_of_the_model_an_effect_must_gain_again_and_again() {
+    let plant = Plant::new(3, &[(WAVE, &[0.05])]);
+    let search = search(&plant, narrow());
+    let (mut set, mut without) = (node(&plant, &[]), node(&plant, &[]));
+    let mut why = |times: f64, fewer: f64, nats: f64, error: f64| {
+        (set.scale, without.scale) = (times * plant.budget(), fewer * plant.budget());
+        search.why_goes(&set, Difference { nats, error }, &without)
+    };
+    assert_eq!(why(1.1, 2.0, 1000.0, 300.0), None);
+    assert_eq!(why(1.1, 2.0, 1000.0, 400.0), Some(Reason::NotRecurring));
+    // Errors of the sensors are what the likelihood supposes.
+    assert_eq!(why(0.9, 2.0, 1000.0, 400.0), None);
+    assert_eq!(why(1.1, 1.0, 1000.0, 300.0), Some(Reason::ErrorNoLower));
+    assert_eq!(why(1.1, 2.0, 0.5 * narrow().better, 0.0), Some(Reason::AsGoodWithout));
+}
+
+#[test]
 fn another_form_of_what_the_base_has_leaves_its_place_to_it_and_is_no_effect_then() {
     let plant = Plant::new(3, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
     let based = |sizes| Climb { base: node(&plant, &[(WAVE, &[0.05])]), ..climb(&plant, sizes) };
