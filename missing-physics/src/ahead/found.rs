@@ -21,8 +21,8 @@ pub const IN_FULL: usize = 8;
 const MOST: f64 = 0.5;
 /// The same where the base model hardly errs more than the sensors: there the force is all that tells.
 pub const MOST_WITHIN: f64 = 0.05;
-/// Share of what the base model errs beyond the sensors, squared, that a model leaves at most: what leaves more is not what is
-/// missing.
+/// Share of what the base model errs beyond the sensors, squared, and of the force that it lacks, that a model leaves at most:
+/// what leaves more is not what is missing.
 const LEFT: f64 = 0.88;
 
 /// What a search found.
@@ -276,7 +276,9 @@ impl Found {
         let no_cause = ahead.is_no_cause(&self.base.model, &top.model).or(astray);
         // Below what the sensors make there are no shares.
         let beyond = ahead.has_shares() && top.scale > ahead.budget();
-        let idle = beyond && leaves_most(&self.base, top, ahead.budget());
+        let within = top.scale <= thresholds.complete * ahead.budget();
+        let idle = beyond && leaves_most(&self.base, top, ahead.budget())
+            || !within && self.leaves_force(ahead);
         let falls = top.foretells_more(&self.base) && !idle;
         if self.complete && falls && no_cause.is_none() {
             return;
@@ -312,6 +314,13 @@ impl Found {
             let because = Some(NoCause::LeavesForce { band });
             self.taken_back(family, ahead, thresholds, (Some(lacking), because));
         }
+    }
+
+    /// Whether nearly all of the force that the base model lacks is still lacking. Where errors are not those of the sensors
+    /// an effect lowers them by following what no force stands behind: a command that changes between two samples.
+    fn leaves_force(&self, ahead: &dyn Ahead) -> bool {
+        let both = self.top().0.lacks(ahead).zip(self.base.lacks(ahead));
+        both.is_some_and(|((last, _), (base, _))| last * last > LEFT * base * base)
     }
 
     /// The force that is lacking before and after, and its 95 % band, where the last model leaves more than so many bands and
