@@ -507,6 +507,20 @@ mod tests {
     }
 
     #[test]
+    fn names_go_where_an_incomplete_model_leaves_nearly_all_of_a_force_that_is_in_doubt() {
+        for (left, complete, stays) in [(1.9, 0.5, false), (1.85, 0.5, true), (1.9, 1.3, true)] {
+            let (plant, mut found) = found(Some(3.0));
+            let lacks =
+                |rms: f64| Series { force: vec![rms, -rms], ..plant.lacks.clone().unwrap() };
+            found.base = found.base.lacking(lacks(2.0));
+            found.rungs[0] = found.rungs[0].clone().lacking(lacks(left));
+            found.complete = complete >= 1.0;
+            found.judge(&plant, &plant, &Thresholds { complete, ..Thresholds::default() });
+            assert_eq!(!found.added.is_empty(), stays, "{left} {complete}");
+        }
+    }
+
+    #[test]
     fn names_go_where_an_incomplete_model_leaves_nearly_all_that_the_base_errs() {
         for (last, stays) in [(1.25, true), (1.28, false)] {
             let (plant, mut found) = found(None);
