@@ -4,7 +4,10 @@ use crate::effects::CDynamics;
 use std::f64::consts::TAU;
 
 use super::own::{Own, turned};
-use super::{About, Apart, Effect, Parameter, Parameters, Periodic, Repeats, Sensor, Shown, Slot};
+use super::{
+    About, Apart, AsFound, Effect, Parameter, Parameters, Periodic, Refused, Repeats, Sensor,
+    Shown, Slot,
+};
 use crate::axis::Quantity;
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -33,6 +36,10 @@ static ABOUT: About = About {
     shows: "a line whose frequency is speed/p and whose force grows with the square of the speed",
     reference: "P. L. M. Heydemann, Applied Optics 20, 1981",
 };
+
+/// Counts that a wave is larger than: some ten places where an axis rests again and again, each rounded by 0.29 counts (rms),
+/// make a wave of this size between them.
+const COUNTS: f64 = 0.1;
 
 /// Order of the low-pass filter, forwards and backwards, behind [`passed`].
 const ORDER: i32 = 8;
@@ -75,6 +82,13 @@ impl Effect for Encoder {
     /// What the sensor shows is in that force already.
     fn shows_beside_given_force(&self) -> bool {
         false
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        let (value, limit) = (found.values[0].hypot(found.values[1]), COUNTS * found.count);
+        let meaning = "it is as small as what rounding to counts makes of a few places at rest";
+        let refused = Refused { name: "amplitude", value, limit, unit_of: "a", meaning };
+        (value <= limit).then_some(refused)
     }
 
     fn told_apart(&self) -> &'static [Apart] {
@@ -147,6 +161,25 @@ mod tests {
         let error = |x: f64| shown(x) - x;
         assert!((error(5e-6) - 2e-7).abs() < 1e-15 && (error(0.0) - 1e-7).abs() < 1e-15);
         assert!((error(3.3e-6) - error(2.33e-5)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_wave_as_small_as_what_rounding_makes_is_none() {
+        let refused = |a: f64, b: f64| {
+            let found = AsFound {
+                values: &[a, b, 5e-3],
+                least: &[-1e-4, -1e-4, 1e-6],
+                most: &[1e-4, 1e-4, 0.05],
+                mass: 30.0,
+                force: 5.0,
+                count: 1e-6,
+                give: 0.0,
+            };
+            Encoder.refused(&found).map(|refused| (refused.value, refused.limit))
+        };
+        assert_eq!(refused(-5.5e-8, 0.0), Some((5.5e-8, 1e-7)));
+        assert!(refused(6e-8, -7e-8).is_some());
+        assert_eq!(refused(8e-8, -7e-8), None);
     }
 
     #[test]
