@@ -252,7 +252,7 @@ pub fn periods(prepared: &Prepared, length: f64, (term, law): (&Term, Periodic))
 /// Frequencies of the supply and what rectifiers make of it, Hz.
 const MAINS: [f64; 8] = [360.0, 300.0, 180.0, 150.0, 120.0, 100.0, 60.0, 50.0];
 /// How far the supply may be from its frequency, as a share: what a large grid allows itself.
-const MAINS_OFF: f64 = 0.002;
+const MAINS_OFF: f64 = 0.001;
 
 /// Frequencies near those of the supply above those that are tried anyway, the highest first.
 fn mains(interval: f64, length: f64, tried: f64) -> Vec<f64> {
@@ -298,9 +298,9 @@ mod tests {
         // 35 s at 1 kHz, tried up to 8 Hz.
         let (interval, length) = (1e-3, 35.0);
         let tried = mains(interval, length, 8.0);
-        assert!(tried.is_sorted_by(|a, b| a > b) && tried.len() < 150, "{}", tried.len());
+        assert!(tried.is_sorted_by(|a, b| a > b) && tried.len() < 260, "{}", tried.len());
         for supply in [50.0, 60.0, 100.0, 300.0] {
-            for off in [-0.0019, 0.0, 0.0013] {
+            for off in [-0.0009, 0.0, 0.0006] {
                 let is = supply * (1.0 + off);
                 let next = tried.iter().map(|f| (f - is).abs()).fold(f64::INFINITY, f64::min);
                 assert!(next * length < LINE_WIDTH, "{is}: {next}");
