@@ -5,9 +5,11 @@ use std::sync::{Arc, Mutex};
 use aep_core::Scale;
 use missing_physics::family::{Ahead, Columns, Own, Rival, Series, Trial, trials};
 use missing_physics::report::{Fault, Refusal};
+use missing_physics::statistics::periodogram::Periodogram;
 use missing_physics::{Fitted, ModelFamily, Recording, Role, TermParameter};
 
 use super::FrictionFamily;
+use super::limits::LINE_WIDTH;
 use crate::effects::free::{Free, RIVALS};
 use crate::effects::{Effect, Repeats};
 use crate::model::Model;
@@ -24,6 +26,13 @@ const KEPT: usize = 4;
 /// Fewest periods in a stroke or a recording: fewer are no wave but a profile. A gain may have fewer: poles can be
 /// nearly as long as the stroke, and its profile is no friction and no spring.
 const LEAST_PERIODS: f64 = 3.0;
+/// Lines that are tried, and the chance of one where there is none.
+const LINES: usize = 5;
+/// See [`LINES`].
+const LINE: f64 = 0.01;
+/// Periods to either side of one, a line width apart: of pieces of a recording its frequency is known less well than the
+/// phase of all of them asks.
+const BESIDE: i32 = 3;
 
 /// The predictor of a recording with the instants that it counts.
 #[derive(Clone, Debug)]
@@ -99,6 +108,30 @@ impl<'a> View<'a> {
     /// The errors as they are.
     pub fn new(family: &'a FrictionFamily, ahead: &'a OneAhead) -> Self {
         Self { family, ahead, coloured: false }
+    }
+
+    /// Periods over time of the lines in what a model errs, close beside one another: the trials that are even in frequency
+    /// end where there would be too many, a hum of the supply beyond them.
+    fn lines(&self, model: &Fitted) -> impl Iterator<Item = f64> {
+        let instants = &self.ahead.instants;
+        let errors = self.errors(&[(model.clone(), self.settings() / 2)]).pop().unwrap_or_default();
+        let mut pieces: Vec<Vec<f64>> = Vec::new();
+        // A model that is no plant errs by the largest number there is.
+        let counted = errors.iter().take_while(|error| error.abs() < f64::MAX);
+        for (k, error) in counted.enumerate() {
+            match pieces.last_mut() {
+                Some(piece) if instants[k].1 == instants[k - 1].1 => piece.push(*error),
+                _ => pieces.push(vec![*error]),
+            }
+        }
+        let time = |k: usize| instants.get(k).map_or(0.0, |(time, _)| *time);
+        let width = LINE_WIDTH / (time(instants.len().saturating_sub(1)) - time(0));
+        let spectrum = Periodogram::new(&pieces, self.family.recording.interval());
+        let lines: Vec<f64> =
+            spectrum.iter().flat_map(|s| s.peaks(LINE)).take(LINES).map(|l| l.frequency).collect();
+        lines
+            .into_iter()
+            .flat_map(move |f| (-BESIDE..=BESIDE).map(move |k| 1.0 / (f + f64::from(k) * width)))
     }
 }
 
@@ -198,7 +231,11 @@ impl Ahead for View<'_> {
         if let Some(trials) = self.family.two_masses(model, term) {
             return trials;
         }
-        trials(self.family, model, term, &self.family.few_shapes(term))
+        let mut shapes = self.family.few_shapes(term);
+        if self.family.periodic(term).is_some_and(|law| law.of == Repeats::ForceOverTime) {
+            shapes.extend(self.lines(model).map(|period| vec![period]));
+        }
+        trials(self.family, model, term, &shapes)
     }
 
     fn columns(&self, setting: usize, term: usize, trials: &[Trial]) -> Option<Columns> {

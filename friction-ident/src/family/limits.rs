@@ -12,7 +12,7 @@ use crate::signal::quantile;
 const MOST_PERIODS: usize = 700;
 /// Spacing of trial periods in frequency times stroke or recording. A line is 1
 /// wide, one of the second harmonic half as much.
-const LINE_WIDTH: f64 = 0.4;
+pub const LINE_WIDTH: f64 = 0.4;
 
 /// Largest share of the time in which a drive is at its limit.
 const SATURATED: f64 = 0.2;
@@ -239,30 +239,11 @@ pub fn periods(prepared: &Prepared, length: f64, (term, law): (&Term, Periodic))
     let passing = prepared.bandwidth / slow;
     let finest = law.shortest.map_or(f64::INFINITY, |shortest| 1.0 / shortest);
     let highest = passing.min(lowest + LINE_WIDTH * MOST_PERIODS as f64 / length).min(finest);
-    let mains = match law.of {
-        Repeats::ForceOverTime => mains(prepared.interval, length, highest),
-        _ => Vec::new(),
-    };
     let count = ((highest - lowest) * length / LINE_WIDTH).ceil().max(1.0) as usize;
-    let even =
-        (0..=count).rev().map(|k| lowest + (highest - lowest).max(0.0) * k as f64 / count as f64);
-    mains.into_iter().chain(even).map(|frequency| vec![1.0 / frequency]).collect()
-}
-
-/// Frequencies of the supply and what rectifiers make of it, Hz.
-const MAINS: [f64; 8] = [360.0, 300.0, 180.0, 150.0, 120.0, 100.0, 60.0, 50.0];
-/// How far the supply may be from its frequency, as a share: what a large grid allows itself.
-const MAINS_OFF: f64 = 0.001;
-
-/// Frequencies near those of the supply above those that are tried anyway, the highest first.
-fn mains(interval: f64, length: f64, tried: f64) -> Vec<f64> {
-    let seen = MAINS.into_iter().filter(|mains| *mains > tried && mains * interval < 0.4);
-    let near = seen.flat_map(|mains| {
-        let lines = (MAINS_OFF * mains * length / LINE_WIDTH).ceil().clamp(1.0, 30.0) as i32;
-        let off = move |k: i32| mains * (1.0 + MAINS_OFF * f64::from(k) / f64::from(lines));
-        (-lines..=lines).rev().map(off)
-    });
-    near.collect()
+    (0..=count)
+        .rev()
+        .map(|k| vec![1.0 / (lowest + (highest - lowest).max(0.0) * k as f64 / count as f64)])
+        .collect()
 }
 
 /// Trial shapes of a term as its effect wants them: the product over its shapes, the last one fastest; nothing where it
@@ -286,28 +267,5 @@ fn line(trials: Trials, parameter: &TermParameter) -> Vec<f64> {
         Trials::Turn(count) => (-count..=count)
             .map(|k| std::f64::consts::PI * f64::from(k) / f64::from(count))
             .collect(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frequencies_of_the_supply_are_tried_beyond_the_others_and_close_enough() {
-        // 35 s at 1 kHz, tried up to 8 Hz.
-        let (interval, length) = (1e-3, 35.0);
-        let tried = mains(interval, length, 8.0);
-        assert!(tried.is_sorted_by(|a, b| a > b) && tried.len() < 260, "{}", tried.len());
-        for supply in [50.0, 60.0, 100.0, 300.0] {
-            for off in [-0.0009, 0.0, 0.0006] {
-                let is = supply * (1.0 + off);
-                let next = tried.iter().map(|f| (f - is).abs()).fold(f64::INFINITY, f64::min);
-                assert!(next * length < LINE_WIDTH, "{is}: {next}");
-            }
-        }
-        // What is tried anyway, or swings within a few samples, is left out.
-        assert!(mains(interval, length, 55.0).iter().all(|f| *f > 55.0));
-        assert!(mains(5e-3, length, 8.0).iter().all(|f| *f < 80.0));
     }
 }

@@ -5,7 +5,7 @@ pub mod basis;
 pub(crate) mod bins;
 pub mod in_time;
 pub mod metrics;
-pub(crate) mod periodogram;
+pub mod periodogram;
 pub mod placebo;
 pub mod residual_tests;
 pub mod split;
