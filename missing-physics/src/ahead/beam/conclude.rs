@@ -228,7 +228,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             if is_last {
                 // What would not be told if it were the best is no alternative to what is told.
                 let found = lags[0].1;
-                let told = |set: &Node| not_told(self.family, self.ahead, base, set).is_none();
+                let told = |set: &Node| {
+                    let refused = not_told(self.family, self.ahead, base, set);
+                    // A usual effect that came along with an alternative need not be there.
+                    refused.is_none_or(|(term, _)| {
+                        self.family.is_usual(term) && !Self::added(base, last).contains(&term)
+                    })
+                };
                 lags.retain(|(set, lag)| {
                     std::ptr::eq(*set, last) || lag - found >= alike || told(set)
                 });

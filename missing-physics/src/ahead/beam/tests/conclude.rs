@@ -90,6 +90,26 @@ fn beside_errors_of_the_model_an_effect_must_gain_again_and_again() {
 }
 
 #[test]
+fn a_usual_effect_that_came_with_an_alternative_need_not_be_there() {
+    let mut plant = Plant::new(9, &[(WAVE, &[0.05])]);
+    let alternatives = |plant: &Plant| {
+        let wave = node(plant, &[(WAVE, &[0.05])]);
+        // Whatever the difference is, they are alike.
+        let mut search = search(plant, Thresholds { better: 1e9, ..narrow() });
+        search.twins.push(node(plant, &[(PUSH, &[1e-5]), (TWIN, &[0.05])]));
+        let climb = climb(plant, vec![vec![wave.clone()]]);
+        let cost = search.comparison.compare(&climb.base, &wave);
+        let costs = vec![(WAVE, cost, climb.base.clone())];
+        let found = search.conclude(climb, &wave, (costs, 0.0), Screened::default(), None);
+        found.sets[1].len() - 1
+    };
+    // Where not every system has it these are two effects, one of which may not be there.
+    assert_eq!(alternatives(&plant), 0);
+    plant.usual = vec![PUSH];
+    assert_eq!(alternatives(&plant), 1);
+}
+
+#[test]
 fn another_form_of_what_the_base_has_leaves_its_place_to_it_and_is_no_effect_then() {
     let plant = Plant::new(3, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
     let based = |sizes| Climb { base: node(&plant, &[(WAVE, &[0.05])]), ..climb(&plant, sizes) };
