@@ -278,7 +278,7 @@ impl Found {
         let beyond = ahead.has_shares() && top.scale > ahead.budget();
         let within = top.scale <= thresholds.complete * ahead.budget();
         let idle = beyond && leaves_most(&self.base, top, ahead.budget())
-            || !within && self.leaves_force(ahead);
+            || self.leaves_force(ahead, if within { thresholds.local } else { 0.0 });
         let falls = top.foretells_more(&self.base) && !idle;
         if self.complete && falls && no_cause.is_none() {
             return;
@@ -316,11 +316,14 @@ impl Found {
         }
     }
 
-    /// Whether nearly all of the force that the base model lacks is still lacking. Where errors are not those of the sensors
-    /// an effect lowers them by following what no force stands behind: a command that changes between two samples.
-    fn leaves_force(&self, ahead: &dyn Ahead) -> bool {
+    /// Whether nearly all of the force that the base model lacks, of more than so many bands, is still lacking, however well
+    /// that is known of the last model. Where errors are not those of the sensors an effect lowers them by following what no
+    /// force stands behind: a command that changes between two samples.
+    fn leaves_force(&self, ahead: &dyn Ahead, bands: f64) -> bool {
         let both = self.top().0.lacks(ahead).zip(self.base.lacks(ahead));
-        both.is_some_and(|((last, _), (base, _))| last * last > LEFT * base * base)
+        both.is_some_and(|((last, _), (base, band))| {
+            base > bands * band && last * last > LEFT * base * base
+        })
     }
 
     /// The force that is lacking before and after, and its 95 % band, where the last model leaves more than so many bands and
@@ -508,15 +511,26 @@ mod tests {
 
     #[test]
     fn names_go_where_an_incomplete_model_leaves_nearly_all_of_a_force_that_is_in_doubt() {
-        for (left, complete, stays) in [(1.9, 0.5, false), (1.85, 0.5, true), (1.9, 1.3, true)] {
+        // Of a model that errs no more than the sensors where the base lacks it beyond doubt.
+        let cases = [
+            (1.9, 0.5, 3.0, false),
+            (1.85, 0.5, 3.0, true),
+            (1.9, 1.3, 3.0, true),
+            (1.9, 1.3, 0.9, false),
+            (1.85, 1.3, 0.9, true),
+        ];
+        for (left, complete, band, stays) in cases {
             let (plant, mut found) = found(Some(3.0));
-            let lacks =
-                |rms: f64| Series { force: vec![rms, -rms], ..plant.lacks.clone().unwrap() };
-            found.base = found.base.lacking(lacks(2.0));
-            found.rungs[0] = found.rungs[0].clone().lacking(lacks(left));
+            let lacks = |rms: f64, band: f64| Series {
+                force: vec![rms, -rms],
+                deviation: vec![band / 1.96; 2],
+                ..plant.lacks.clone().unwrap()
+            };
+            found.base = found.base.lacking(lacks(2.0, band));
+            found.rungs[0] = found.rungs[0].clone().lacking(lacks(left, 3.0));
             found.complete = complete >= 1.0;
             found.judge(&plant, &plant, &Thresholds { complete, ..Thresholds::default() });
-            assert_eq!(!found.added.is_empty(), stays, "{left} {complete}");
+            assert_eq!(!found.added.is_empty(), stays, "{left} {complete} {band}");
         }
     }
 
