@@ -1,13 +1,16 @@
 //! A base model that predicts best where the force hardly matters does not lead the search astray.
 
+mod seen;
+
 use std::f64::consts::PI;
 
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Axis, Controller, Model, Pd, Setup, closed_loop, control};
-use missing_physics::{Channel, Recording, Settings, discover};
+use missing_physics::{Recording, Settings, discover};
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
+use seen::seen;
 
 /// A position controller to whose force a disturbance of 0.15 N comes that nobody records.
 struct Shaken {
@@ -41,12 +44,7 @@ fn slow_axis() -> Recording {
     let mut shaken = Shaken { pd, random, disturbance: Vec::new() };
     let run = closed_loop(&plant, &reference, &mut shaken, &Setup::default()).unwrap();
     let force = run.command.iter().zip(&shaken.disturbance).map(|(f, d)| f - d).collect();
-    let channels = vec![
-        Channel::new("force", "N", force),
-        Channel::new("position", "m", run.recording.require("position").unwrap().to_vec()),
-    ];
-    let time = run.recording.time().to_vec();
-    Recording::new("slow axis", time, channels).unwrap().with_hold(run.recording.hold())
+    seen("slow axis", &run.recording, force)
 }
 
 #[test]

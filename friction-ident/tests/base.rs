@@ -1,11 +1,14 @@
 //! A base model of many effects is found, whatever the number of their shapes.
 
+mod seen;
+
 use std::f64::consts::TAU;
 
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Axis, Model, Pd, Setup, closed_loop, control};
 use missing_physics::report::Verdict;
-use missing_physics::{Channel, Recording, Settings, discover};
+use missing_physics::{Recording, Settings, discover};
+use seen::seen;
 
 /// An axis of 20 kg with a Stribeck curve, a ripple of 4 mm and a contact, at many speeds, seen with 1 um.
 fn axis() -> Recording {
@@ -24,12 +27,7 @@ fn axis() -> Recording {
     let reference = control::from_positions(1e-3, (0..20_000).map(at).collect());
     let mut controller = Pd::new(4e4, 900.0);
     let run = closed_loop(&plant, &reference, &mut controller, &Setup::default()).unwrap();
-    let channels = vec![
-        Channel::new("force", "N", run.command),
-        Channel::new("position", "m", run.recording.require("position").unwrap().to_vec()),
-    ];
-    let time = run.recording.time().to_vec();
-    Recording::new("axis", time, channels).unwrap().with_hold(run.recording.hold())
+    seen("axis", &run.recording, run.command)
 }
 
 #[test]

@@ -1,11 +1,14 @@
 //! A hum of the supply, faster than any period that is tried along a recording, is told as such.
 
+mod seen;
+
 use std::f64::consts::TAU;
 
 use friction_ident::family::{FrictionFamily, Options};
 use friction_ident::{Axis, Controller, Model, Pd, Setup, closed_loop, control};
 use missing_physics::report::{Course, Remains};
-use missing_physics::{Channel, Recording, Settings, discover};
+use missing_physics::{Recording, Settings, discover};
+use seen::seen;
 
 const SIZE: f64 = 6.0;
 const PERIOD: f64 = 1.0 / 50.02;
@@ -36,12 +39,7 @@ fn axis() -> Recording {
     let mut hummed = Hummed { pd: Pd::new(4e4, 900.0), hum: Vec::new() };
     let run = closed_loop(&plant, &reference, &mut hummed, &Setup::default()).unwrap();
     let force = run.command.iter().zip(&hummed.hum).map(|(force, hum)| force - hum).collect();
-    let channels = vec![
-        Channel::new("force", "N", force),
-        Channel::new("position", "m", run.recording.require("position").unwrap().to_vec()),
-    ];
-    let time = run.recording.time().to_vec();
-    Recording::new("hum", time, channels).unwrap().with_hold(run.recording.hold())
+    seen("hum", &run.recording, force)
 }
 
 #[test]

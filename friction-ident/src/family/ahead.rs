@@ -11,7 +11,7 @@ use missing_physics::{Fitted, ModelFamily, Recording, Role, TermParameter};
 use super::FrictionFamily;
 use super::limits::LINE_WIDTH;
 use crate::effects::free::{Free, RIVALS};
-use crate::effects::{Effect, Repeats};
+use crate::effects::{Effect, Periodic, Repeats};
 use crate::model::Model;
 use crate::predictor::{Predictor, Wave};
 
@@ -26,9 +26,9 @@ const KEPT: usize = 4;
 /// Fewest periods in a stroke or a recording: fewer are no wave but a profile. A gain may have fewer: poles can be
 /// nearly as long as the stroke, and its profile is no friction and no spring.
 const LEAST_PERIODS: f64 = 3.0;
-/// Lines that are tried, and the chance of one where there is none.
+/// Lines that are tried.
 const LINES: usize = 5;
-/// See [`LINES`].
+/// Largest chance of a line where there is none.
 const LINE: f64 = 0.01;
 /// Periods to either side of one, a line width apart: of pieces of a recording its frequency is known less well than the
 /// phase of all of them asks.
@@ -110,28 +110,20 @@ impl<'a> View<'a> {
         Self { family, ahead, coloured: false }
     }
 
-    /// Periods over time of the lines in what a model errs, close beside one another: the trials that are even in frequency
-    /// end where there would be too many, a hum of the supply beyond them.
-    fn lines(&self, model: &Fitted) -> impl Iterator<Item = f64> {
-        let instants = &self.ahead.instants;
+    /// Periods of a `law` over time at the lines in what a model errs, close beside one another: the trials that are even in
+    /// frequency end where there would be too many, a hum of the supply beyond them.
+    fn lines(&self, model: &Fitted, law: Periodic) -> impl Iterator<Item = f64> {
         let errors = self.errors(&[(model.clone(), self.settings() / 2)]).pop().unwrap_or_default();
-        let mut pieces: Vec<Vec<f64>> = Vec::new();
         // A model that is no plant errs by the largest number there is.
-        let counted = errors.iter().take_while(|error| error.abs() < f64::MAX);
-        for (k, error) in counted.enumerate() {
-            match pieces.last_mut() {
-                Some(piece) if instants[k].1 == instants[k - 1].1 => piece.push(*error),
-                _ => pieces.push(vec![*error]),
-            }
-        }
-        let time = |k: usize| instants.get(k).map_or(0.0, |(time, _)| *time);
-        let width = LINE_WIDTH / (time(instants.len().saturating_sub(1)) - time(0));
+        let mut errors = errors.into_iter().take_while(|error| error.abs() < f64::MAX);
+        let pieces = self.ahead.instants.chunk_by(|a, b| a.1 == b.1);
+        let pieces: Vec<Vec<f64>> =
+            pieces.map(|piece| errors.by_ref().take(piece.len()).collect()).collect();
         let spectrum = Periodogram::new(&pieces, self.family.recording.interval());
-        let lines: Vec<f64> =
-            spectrum.iter().flat_map(|s| s.peaks(LINE)).take(LINES).map(|l| l.frequency).collect();
-        lines
-            .into_iter()
-            .flat_map(move |f| (-BESIDE..=BESIDE).map(move |k| 1.0 / (f + f64::from(k) * width)))
+        let lines: Vec<_> = spectrum.iter().flat_map(|s| s.peaks(LINE)).take(LINES).collect();
+        let width = LINE_WIDTH / self.family.extent_of(law);
+        let beside = move |f: f64| (-BESIDE..=BESIDE).map(move |k| f + f64::from(k) * width);
+        lines.into_iter().flat_map(move |line| beside(line.frequency)).map(f64::recip)
     }
 }
 
@@ -232,8 +224,9 @@ impl Ahead for View<'_> {
             return trials;
         }
         let mut shapes = self.family.few_shapes(term);
-        if self.family.periodic(term).is_some_and(|law| law.of == Repeats::ForceOverTime) {
-            shapes.extend(self.lines(model).map(|period| vec![period]));
+        let law = self.family.periodic(term).filter(|law| law.of == Repeats::ForceOverTime);
+        if let Some(law) = law {
+            shapes.extend(self.lines(model, law).map(|period| vec![period]));
         }
         trials(self.family, model, term, &shapes)
     }

@@ -489,11 +489,14 @@ impl FrictionFamily {
     fn extent_of(&self, law: Periodic) -> f64 {
         match law.of {
             Repeats::Force | Repeats::Gain | Repeats::Sensor => self.stroke.1 - self.stroke.0,
-            Repeats::ForceOverTime => {
-                let moment = |extent| self.extent(extent).unwrap_or_default();
-                moment(Extent::RecordingEnd) - moment(Extent::RecordingBegin)
-            }
+            Repeats::ForceOverTime => self.duration(),
         }
+    }
+
+    /// From the begin of the recording to its end, s.
+    fn duration(&self) -> f64 {
+        let moment = |extent| self.extent(extent).unwrap_or_default();
+        moment(Extent::RecordingEnd) - moment(Extent::RecordingBegin)
     }
 
     fn is_simple(&self, term: usize) -> bool {
@@ -655,9 +658,7 @@ impl ModelFamily for FrictionFamily {
             let effect = self.effect(term)?;
             if effect.is_course_of_time() && !self.has_level(model) {
                 // Where nothing is left in the end a course without end is the level itself.
-                let time = self.recording.time();
-                let duration = time.last().zip(time.first()).map(|(last, first)| last - first);
-                return duration.filter(|_| parameter.role == Role::Shape);
+                return (parameter.role == Role::Shape).then(|| self.duration());
             }
             let place = model.terms.iter().position(|t| *t == term)?;
             let values = self.values_in_full(model, place)?;

@@ -182,8 +182,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
         sets
     }
 
-    /// The one effect that a set has in the place of one that was found, and that one; what every system has may go or
-    /// come with them.
+    /// The one effect that was found and is not in a set, and the one that the set has in its place; what every system has
+    /// may go or come with them.
     fn exchanged(&self, set: &[usize]) -> Option<(usize, usize)> {
         let added = self.found.added.as_slice();
         let beside = |these: &[usize], those: &[usize]| -> Vec<usize> {
