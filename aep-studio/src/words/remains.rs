@@ -126,7 +126,7 @@ pub fn no_cause(why: &NoCause) -> String {
             format!("most of what depends on {coordinate} is left")
         }
         NoCause::LeavesForce { .. } => {
-            "the base model hardly errs more than the sensors: what is there would leave hardly any of that force".to_owned()
+            "with it the model hardly errs more than the sensors, and what is there would then leave hardly any of that force".to_owned()
         }
     }
 }

@@ -18,6 +18,7 @@ mod law;
 mod local;
 mod looks;
 pub mod node;
+mod predictive;
 pub mod quick;
 mod reading;
 mod refused;

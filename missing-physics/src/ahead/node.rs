@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use super::law::Law;
+use super::predictive::Cost;
 use super::{Ahead, scales, statistics};
 use crate::family::{Fitted, ModelFamily, Series};
 
@@ -28,7 +29,7 @@ pub struct Node {
     pub deviation: f64,
     held: bool,
     jacobian: OnceLock<Vec<Vec<f64>>>,
-    held_out: OnceLock<Vec<f64>>,
+    cost: OnceLock<Cost>,
     correlation: OnceLock<f64>,
     missing_force: OnceLock<Option<Series>>,
 }
@@ -51,7 +52,7 @@ impl Node {
             deviation,
             held: false,
             jacobian: OnceLock::new(),
-            held_out: OnceLock::new(),
+            cost: OnceLock::new(),
             correlation: OnceLock::new(),
             missing_force: OnceLock::new(),
         }
@@ -97,9 +98,9 @@ impl Node {
         })
     }
 
-    /// The errors that count where models are compared, found once by `find`.
-    pub fn held_out(&self, find: impl FnOnce() -> Vec<f64>) -> &[f64] {
-        self.held_out.get_or_init(find)
+    /// What its fitted parameters cost where models are compared, found once by `find`.
+    pub fn cost(&self, find: impl FnOnce() -> Cost) -> Cost {
+        *self.cost.get_or_init(find)
     }
 
     /// How many errors say as much as an independent one.

@@ -132,7 +132,7 @@ pub enum NoCause {
         /// The coordinate.
         coordinate: String,
     },
-    /// The base model hardly errs more than the sensors, and some of the force that it lacks is lacking with the effects, too.
+    /// The last model hardly errs more than the sensors, and some of the force that it lacks is lacking with the effects, too.
     LeavesForce {
         /// Root mean square of the half-widths of its 95 % bands.
         band: f64,

@@ -11,7 +11,7 @@ use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
 
-/// Standard errors that each of several effects must gain where the model with them errs more than the sensors make.
+/// Standard errors that each of several effects must gain where the model with them is incomplete.
 const RECURS: f64 = 3.0;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
@@ -81,9 +81,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
 
     /// Why an effect of a set of several is not needed, if so: what the set without it loses, and that one.
     pub(super) fn why_goes(&self, set: &Node, cost: Difference, without: &Node) -> Option<Reason> {
-        // Errors beyond the sensors' are those of the model, and what lowers them counts only as far as it does so again and
-        // again (Q. H. Vuong, 1989).
-        let misfit = self.ahead.has_shares() && self.budget(set) > 1.0;
+        // Errors of an incomplete model are its own, and what lowers them counts only as far as it does so again and again
+        // (Q. H. Vuong, 1989).
+        let misfit = self.ahead.has_shares() && self.budget(set) > self.thresholds.complete;
         if cost.nats < self.thresholds.better {
             Some(Reason::AsGoodWithout)
         } else if !set.foretells_more(without) {

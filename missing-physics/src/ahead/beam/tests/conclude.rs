@@ -73,7 +73,7 @@ fn an_effect_with_which_the_error_does_not_fall_beside_others_goes_whatever_it_g
 }
 
 #[test]
-fn beside_errors_of_the_model_an_effect_must_gain_again_and_again() {
+fn beside_an_incomplete_model_an_effect_must_gain_again_and_again() {
     let plant = Plant::new(3, &[(WAVE, &[0.05])]);
     let search = search(&plant, narrow());
     let (mut set, mut without) = (node(&plant, &[]), node(&plant, &[]));
@@ -81,10 +81,10 @@ fn beside_errors_of_the_model_an_effect_must_gain_again_and_again() {
         (set.scale, without.scale) = (times * plant.budget(), fewer * plant.budget());
         search.why_goes(&set, Difference { nats, error }, &without)
     };
-    assert_eq!(why(1.1, 2.0, 1000.0, 300.0), None);
-    assert_eq!(why(1.1, 2.0, 1000.0, 400.0), Some(Reason::NotRecurring));
-    // Errors of the sensors are what the likelihood supposes.
-    assert_eq!(why(0.9, 2.0, 1000.0, 400.0), None);
+    assert_eq!(why(1.5, 2.0, 1000.0, 300.0), None);
+    assert_eq!(why(1.5, 2.0, 1000.0, 400.0), Some(Reason::NotRecurring));
+    // Errors of a complete model are what the likelihood supposes.
+    assert_eq!(why(1.2, 2.0, 1000.0, 400.0), None);
     assert_eq!(why(1.1, 1.0, 1000.0, 300.0), Some(Reason::ErrorNoLower));
     assert_eq!(why(1.1, 2.0, 0.5 * narrow().better, 0.0), Some(Reason::AsGoodWithout));
 }

@@ -61,8 +61,7 @@ fn the_way_to_a_lower_valley_is_gone_on_a_part_and_its_end_on_all() {
 #[test]
 fn a_flexible_form_stands_where_it_gains_enough_and_not_where_it_gains_less() {
     // A bend so small that it gains something, and less than a form must.
-    for (bend, gained, expected) in [(0.05, true, BENT), (0.00015, true, WAVE), (0.0, false, WAVE)]
-    {
+    for (bend, gained, expected) in [(0.05, true, BENT), (0.0001, true, WAVE), (0.0, false, WAVE)] {
         let plant = Plant::new(3, &[(BENT, &[0.05, bend])]);
         let (plain, bent) =
             (node(&plant, &[(WAVE, &[0.05])]), node(&plant, &[(BENT, &[0.05, bend])]));
