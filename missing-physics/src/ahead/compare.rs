@@ -3,7 +3,7 @@
 //! `compare(a, b)` is the held-out log-likelihood of `b` less that of `a`, in nats. Every piece of the recording
 //! is held out in turn, and foretold with the parameters as the others leave them open. Each model stands at its own most
 //! likely process noise, both are judged in units of the smaller rms, and the difference is divided by
-//! the number of errors that say as much as an independent one.
+//! the number of errors of that model that say as much as an independent one.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -78,7 +78,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         let cost = |node: &Node| {
             let cost = node.cost(|| self.cost(node));
             // Errors are worth as much as they are there, what is open is what it is.
-            cost.open + cost.moved * node.correlation() / b.correlation()
+            cost.open + cost.moved * node.correlation() / better(a, b).correlation()
         };
         let in_sample = self.unfitted(a, b);
         Difference { nats: in_sample.nats + cost(a) - cost(b), ..in_sample }
@@ -86,11 +86,12 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
 
     /// The same of two models that were not fitted to this recording: nothing is held out.
     pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
-        let scale = a.deviation.min(b.deviation);
+        let better = better(a, b);
+        let (scale, correlation) = (better.deviation, better.correlation());
         let loss = |node: &Node, k: usize| statistics::loss(node.innovations[k] / scale);
         let mut sums = vec![0.0; self.blocks];
         for (k, block) in self.block.iter().enumerate() {
-            sums[*block] += (loss(a, k) - loss(b, k)) / b.correlation();
+            sums[*block] += (loss(a, k) - loss(b, k)) / correlation;
         }
         let nats: f64 = sums.iter().sum();
         let mean = nats / self.blocks.max(1) as f64;
@@ -135,6 +136,11 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
             moment: DVector::from_vec(all.moment) * worth,
         }
     }
+}
+
+/// The model whose errors are smaller: they are nearer to noise, whose size and colour both are judged by.
+fn better<'n>(a: &'n Node, b: &'n Node) -> &'n Node {
+    if a.deviation < b.deviation { a } else { b }
 }
 
 /// What is expected of the amplitudes of effects where the data say nothing: 0, give or take what those of the same
@@ -190,11 +196,8 @@ mod tests {
         let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
         let comparison = Comparison::new(&plant, &plant);
         let (there, back) = (comparison.compare(&a, &b), comparison.compare(&b, &a));
-        let open = comparison.cost(&b).open - comparison.cost(&a).open;
-        // Both in nats of independent errors of the model that is judged.
-        let in_all = |nats: f64, node: &Node| nats * node.correlation();
-        let (there, back) = (in_all(there.nats + open, &b), in_all(back.nats - open, &a));
-        assert!(there > 0.0 && (there + back).abs() < 1e-9 * there, "{there} {back}");
+        assert!(there.nats > 0.0);
+        assert_eq!(back, Difference { nats: -there.nats, ..there });
         assert_eq!(comparison.compare(&b, &b), Difference { nats: 0.0, error: 0.0 });
     }
 

@@ -211,6 +211,12 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             search.refit(&model, last.setting, STEPS.1)
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
+        // One by one they may all be needed where the fit of all stays behind the rival alone.
+        let all = self.comparison.compare(free, &beside);
+        if !kept.is_empty() && all.nats < needed {
+            self.note(0, free, &beside, negative(all), Outcome::Dropped, Some(because(rival)));
+            return (Vec::new(), free.clone());
+        }
         loop {
             let each = kept.par_iter().map(|term| {
                 let others: Vec<usize> = kept.iter().copied().filter(|t| t != term).collect();
