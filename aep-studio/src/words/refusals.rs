@@ -10,7 +10,7 @@ pub fn reason(decision: &Decision) -> Option<String> {
         Reason::AsGoodWithout => "as good without".to_owned(),
         Reason::ErrorNoLower => "the prediction error is no lower with it".to_owned(),
         Reason::NotRecurring => {
-            "what it gains is within three standard errors, and the model with it is incomplete"
+            "by its standard error chance gains as much, and the model with it is incomplete"
                 .to_owned()
         }
         Reason::Chance => "chance gains as much".to_owned(),

@@ -81,7 +81,9 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
             cost.open + cost.moved * node.correlation() / better(a, b).correlation()
         };
         let in_sample = self.unfitted(a, b);
-        Difference { nats: in_sample.nats + cost(a) - cost(b), ..in_sample }
+        // A part stands for a recording that gains so many times as much, and costs no more.
+        let cost = self.ahead.share() * (cost(a) - cost(b));
+        Difference { nats: in_sample.nats + cost, ..in_sample }
     }
 
     /// The same of two models that were not fitted to this recording: nothing is held out.

@@ -34,6 +34,12 @@ impl Thresholds {
     pub fn clear(&self, nats: f64) -> f64 {
         self.better.max(self.share * nats)
     }
+
+    /// Largest p-value, from the standard error of its gain, of each of several effects in a model that is not complete: that
+    /// of a search, of each candidate that is fitted beside a model (C. E. Bonferroni).
+    pub fn recurs(&self) -> f64 {
+        self.chance / self.fitted.max(1) as f64
+    }
 }
 
 impl Default for Thresholds {

@@ -11,9 +11,6 @@ use crate::ahead::screen::Screened;
 use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
 
-/// Standard errors that each of several effects must gain where the model with them is incomplete.
-const RECURS: f64 = 3.0;
-
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// The best set, of the smallest size that is needed, from one of `known` effects on.
     pub(super) fn size(&mut self, climb: &Climb, mut best: Node, known: usize) -> Node {
@@ -88,7 +85,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             Some(Reason::AsGoodWithout)
         } else if !set.foretells_more(without) {
             Some(Reason::ErrorNoLower)
-        } else if misfit && cost.nats < RECURS * cost.error {
+        } else if misfit && cost.p_value() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
         } else {
             None
