@@ -219,7 +219,7 @@ mod tests {
         };
         let more = no_cause(&NoCause::PlainDoesMore { place: place.clone() });
         assert_eq!(more, "largest mean error +0.500 V near 20.0 mm does more");
-        assert!(no_cause(&NoCause::LeavesForce { band: 0.2 }).contains("would leave hardly any"));
+        assert!(no_cause(&NoCause::LeavesForce { band: 0.2 }).contains("leave hardly any"));
         assert_eq!(
             remains(&Remains::Structure { place }),
             "What it leaves still depends on level (34 % of it; largest mean error +0.500 V near 20.0 mm)."

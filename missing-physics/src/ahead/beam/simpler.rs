@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::grow::CATCHES_UP;
 use super::{Climb, Costs, STEPS, Search};
+use crate::ahead::astray::elsewhere;
 use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
 use crate::ahead::screen::{Promise, screen};
@@ -65,6 +66,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if open.is_empty() {
             return None;
         }
+        let near = self.near(best, without);
+        let without = near.as_ref().unwrap_or(without);
         let screened = screen(self.family, self.ahead, without, &open, false);
         let clear = self.thresholds.clear(self.comparison.compare(&climb.base, best).nats);
         let starts = self.chosen(&screened.promises, self.promising(), self.thresholds.beam);
@@ -78,7 +81,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .collect();
         let others = starts.into_par_iter().map(|start| {
             let other = self.begun(start, without.setting)?;
-            Some(self.fitter().settled(other, STEPS.1))
+            let other = self.fitter().settled(other, STEPS.1);
+            let lost = -self.comparison.compare(best, &other).nats;
+            // What does most of it may do all of it at its best.
+            let polish = lost > 0.0 && lost < CATCHES_UP * cost;
+            Some(if polish { self.refit(&other.model, other.setting, STEPS.2) } else { other })
         });
         for other in others.collect::<Option<Vec<Node>>>()? {
             let by = self.comparison.compare(best, &other);
@@ -101,5 +108,18 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
         }
         None
+    }
+
+    /// A model without one of the effects of the `best` set with what every model has as it is there, where its fit went astray.
+    fn near(&self, best: &Node, without: &Node) -> Option<Node> {
+        let mut near = without.model.clone();
+        for (place, term) in without.model.terms.iter().enumerate() {
+            if let Some(there) = best.model.terms.iter().position(|t| t == term) {
+                let values = &best.model.values[best.model.range(self.family, there)];
+                near.values[without.model.range(self.family, place)].copy_from_slice(values);
+            }
+        }
+        let astray = !elsewhere(self.family, &near, &without.model).is_empty();
+        astray.then(|| self.base_holding(near))
     }
 }
