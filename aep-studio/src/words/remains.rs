@@ -126,7 +126,7 @@ pub fn no_cause(why: &NoCause) -> String {
             format!("most of what depends on {coordinate} is left")
         }
         NoCause::LeavesForce { .. } => {
-            "with it the model hardly errs more than the sensors, and what is there would then leave hardly any of that force".to_owned()
+            "with it the model hardly errs more than the sensors: what is there would leave hardly any of that force".to_owned()
         }
     }
 }
@@ -219,7 +219,7 @@ mod tests {
         };
         let more = no_cause(&NoCause::PlainDoesMore { place: place.clone() });
         assert_eq!(more, "largest mean error +0.500 V near 20.0 mm does more");
-        assert!(no_cause(&NoCause::LeavesForce { band: 0.2 }).contains("leave hardly any"));
+        assert!(no_cause(&NoCause::LeavesForce { band: 0.2 }).contains("would leave hardly any"));
         assert_eq!(
             remains(&Remains::Structure { place }),
             "What it leaves still depends on level (34 % of it; largest mean error +0.500 V near 20.0 mm)."

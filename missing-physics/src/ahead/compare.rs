@@ -204,6 +204,20 @@ mod tests {
     }
 
     #[test]
+    fn a_part_costs_its_share_of_what_the_whole_does() {
+        let mut plant = Plant::new(1, &[(WAVE, &[WEAK])]);
+        plant.pieces = Some((Box::new(Plant::new(1, &[(WAVE, &[WEAK])])), 0.25));
+        let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
+        let part = plant.ahead_in_part().unwrap();
+        let cost = |ahead: &dyn Ahead| {
+            let comparison = Comparison::new(&plant, ahead);
+            comparison.unfitted(&a, &b).nats - comparison.compare(&a, &b).nats
+        };
+        let (whole, part) = (cost(&plant), cost(part.as_ref()));
+        assert!(whole.abs() > 1.0 && (part / whole - 0.25).abs() < 1e-9, "{part} of {whole}");
+    }
+
+    #[test]
     fn the_true_structure_gains_the_likelihood_that_its_errors_say() {
         let plant = Plant::new(2, &[(WAVE, &[WEAK])]);
         let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));

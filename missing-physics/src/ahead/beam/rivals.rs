@@ -194,7 +194,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// The effects that are needed beside a rival, as much as any that is added, and the model with them and with it.
-    fn needed_beside(
+    pub(super) fn needed_beside(
         &mut self,
         base: &Node,
         last: &Node,
@@ -211,11 +211,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             search.refit(&model, last.setting, STEPS.1)
         };
         let mut beside = if kept.is_empty() { free.clone() } else { with(self, &kept) };
-        // One by one they may all be needed where the fit of all stays behind the rival alone.
-        let all = self.comparison.compare(free, &beside);
-        if !kept.is_empty() && all.nats < needed {
-            self.note(0, free, &beside, negative(all), Outcome::Dropped, Some(because(rival)));
-            return (Vec::new(), free.clone());
+        // One by one several may all be needed where the fit of all stays behind the rival alone.
+        if kept.len() > 1 {
+            let all = self.comparison.compare(free, &beside);
+            if all.nats < needed {
+                self.note(0, free, &beside, negative(all), Outcome::Dropped, Some(because(rival)));
+                return (Vec::new(), free.clone());
+            }
         }
         loop {
             let each = kept.par_iter().map(|term| {

@@ -111,7 +111,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     }
 
     /// A model without one of the effects of the `best` set with what every model has as it is there, where its fit went astray.
-    fn near(&self, best: &Node, without: &Node) -> Option<Node> {
+    pub(super) fn near(&self, best: &Node, without: &Node) -> Option<Node> {
         let mut near = without.model.clone();
         for (place, term) in without.model.terms.iter().enumerate() {
             if let Some(there) = best.model.terms.iter().position(|t| t == term) {

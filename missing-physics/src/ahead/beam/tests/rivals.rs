@@ -264,3 +264,23 @@ fn a_refused_set_that_goes_on_from_what_was_found_takes_it_back_where_it_does_th
     // Where nothing is left nothing is a part of something else.
     assert_eq!(parts(0.001, 0.002), None);
 }
+
+#[test]
+fn what_does_more_alone_leaves_nothing_to_be_asked_one_by_one() {
+    let plant = Plant::new(11, &[(RIVAL, &[0.05])]);
+    let last = node(&plant, &[(PUSH, &[1e-3]), (TONE, &[1e-3, 5.0])]);
+    let free = node(&plant, &[(RIVAL, &[0.05])]);
+    let rival = Rival { term: RIVAL, title: "a wave less a beat", kin: Vec::new() };
+    let mut search = search(&plant, narrow());
+    let (kept, beside) = search.needed_beside(&node(&plant, &[]), &last, &free, &rival);
+    assert!(kept.is_empty());
+    assert_eq!(beside.model, free.model);
+    assert_eq!(search.decisions.len(), 1, "{:?}", search.decisions[0].candidate);
+    // Where each does what the rival does not all stay.
+    let plant = Plant::new(11, &[(RIVAL, &[0.05]), (PUSH, &[0.05]), (TONE, &[0.05, 5.0])]);
+    let last = node(&plant, &[(PUSH, &[0.05]), (TONE, &[0.05, 5.0])]);
+    let free = node(&plant, &[(RIVAL, &[0.05])]);
+    let mut search = super::search(&plant, narrow());
+    let (kept, _) = search.needed_beside(&node(&plant, &[]), &last, &free, &rival);
+    assert_eq!((kept, search.decisions.len()), (vec![PUSH, TONE], 0));
+}

@@ -92,3 +92,20 @@ fn the_most_promising_one_is_fitted_however_little_of_what_is_lost_it_promises()
         assert!((1..=most).contains(&search.decisions.len()), "{}", search.decisions.len());
     }
 }
+
+#[test]
+fn simpler_effects_are_asked_where_the_mass_is_right() {
+    let plant = Plant::new(6, &[(WAVE, &[0.05])]);
+    let search = search(&plant, narrow());
+    let best = node(&plant, &[(WAVE, &[0.05])]);
+    let near = |drive: f64| {
+        let mut without = node(&plant, &[(PUSH, &[0.02])]);
+        without.model.values[DRIVE] = drive;
+        search.near(&best, &without)
+    };
+    // What every plant has stays, what came in the place of the effect is fitted.
+    let there = near(4.0).unwrap();
+    assert_eq!(there.model.terms, [DRIVE, PUSH]);
+    assert!(there.is_held() && there.model.values[DRIVE] == best.model.values[DRIVE]);
+    assert!(near(2.0).is_none());
+}
