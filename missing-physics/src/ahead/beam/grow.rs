@@ -1,10 +1,11 @@
 //! From sets of effects to those with one more: screened, fitted, compared.
 
+use std::cmp::Ordering;
 use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::{Climb, INSIDE, STEPS, Search};
+use super::{Climb, FORM, INSIDE, STEPS, Search};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::{Ranked, Row};
 use crate::ahead::node::Node;
@@ -87,7 +88,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 }
                 let same = |(other, _): &(Node, Difference)| self.key(other) == self.key(&child);
                 match next.iter().position(same) {
-                    Some(k) if self.comparison.compare(&next[k].0, &child).nats > 0.0 => {
+                    Some(k) if self.is_better_form(&next[k].0, &child) => {
                         next[k] = (child, gain);
                     }
                     Some(_) => {}
@@ -187,8 +188,16 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         fitted.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
         let keep = if size == 1 { self.thresholds.fitted } else { self.thresholds.beam };
         fitted.truncate(keep);
-        let mut settled: Vec<Node> =
-            fitted.into_par_iter().map(|node| self.fitter().settled(node, STEPS.1)).collect();
+        let settle = |node: Node| {
+            let settled = self.fitter().settled(node, STEPS.1);
+            if !from.is_held() {
+                return settled;
+            }
+            // The mass is free again, and its valley as far away as that of a base model may be.
+            let far = self.base_in_time(settled.model.clone());
+            if far.deviation < settled.deviation { far } else { settled }
+        };
+        let mut settled: Vec<Node> = fitted.into_par_iter().map(settle).collect();
         let best = settled.iter().map(|node| node.deviation).fold(f64::INFINITY, f64::min);
         settled = settled
             .into_par_iter()
@@ -215,6 +224,16 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let shaped = shaped
             .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
         (shaped.collect(), screened)
+    }
+
+    /// Whether another form of the same effects predicts better, one of more parameters by more than a form must gain.
+    fn is_better_form(&self, form: &Node, other: &Node) -> bool {
+        let needed = match other.model.values.len().cmp(&form.model.values.len()) {
+            Ordering::Less => -FORM,
+            Ordering::Equal => 0.0,
+            Ordering::Greater => FORM,
+        };
+        self.comparison.compare(form, other).nats > needed
     }
 
     /// What a candidate must promise to be fitted where the first order errs most, nats.
