@@ -2,6 +2,7 @@
 
 mod current;
 mod direction;
+mod knee;
 mod ripple;
 mod stroke;
 
@@ -16,8 +17,8 @@ use crate::effects::CDynamics;
 #[derive(Clone, Copy, Debug)]
 pub struct MotorGain;
 
-static FORMS: [&dyn Effect; 4] =
-    [&direction::Direction, &current::Current, &stroke::Stroke, &ripple::Ripple];
+static FORMS: [&dyn Effect; 5] =
+    [&direction::Direction, &current::Current, &knee::Knee, &stroke::Stroke, &ripple::Ripple];
 
 static ABOUT: About = About {
     name: "motor-gain",
