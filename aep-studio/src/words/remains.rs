@@ -21,7 +21,7 @@ pub fn remains(what: &Remains) -> String {
             let does = if instead_of.is_empty() {
                 format!("lowers the prediction error by {nats:.0} nats")
             } else {
-                format!("predicts no worse than {} ({nats:+.0} nats)", instead_of.join(" + "))
+                format!("predicts better than {} by {nats:.0} nats", instead_of.join(" + "))
             };
             let (by, refused) = (by.join(" + "), super::refusal(refusal));
             match refusal {
@@ -161,7 +161,7 @@ mod tests {
         );
         assert_eq!(
             told(&["drift"], Refusal::AtLimit { parameter: parameter() }),
-            "backlash predicts no worse than drift (+300 nats), but is not that (backlash.b ended at the limit of its search): \
+            "backlash predicts better than drift by 300 nats, but is not that (backlash.b ended at the limit of its search): \
              something is missing that acts like it and is not in the library."
         );
     }

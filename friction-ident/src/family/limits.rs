@@ -17,9 +17,6 @@ pub const LINE_WIDTH: f64 = 0.4;
 /// Largest share of the time in which a drive is at its limit.
 const SATURATED: f64 = 0.2;
 
-/// Most that a gain loses at the largest force, of what is left: a motor that loses more than a third is none that goes on pulling.
-const LOST: f64 = 0.5;
-
 /// Sizes of the recording.
 pub struct Limits {
     axis: Axis,
@@ -162,7 +159,8 @@ impl Limits {
             Quantity::Stiffness => Size { rms: self.stroke, most: self.stroke },
             Quantity::Mass => self.acceleration,
             Quantity::Force => Size { rms: 1.0, most: 1.0 },
-            Quantity::PerForce => return (0.0, LOST / self.force.most, 0.1 / self.force.most),
+            // A motor that loses more than a third of the largest force is none that goes on pulling.
+            Quantity::PerForce => return (0.0, 0.5 / self.force.most, 0.1 / self.force.most),
             Quantity::Time => return (0.0, parameter.high, self.interval),
             _ => {
                 let (low, high) = parameter.range(self.axis);
@@ -197,8 +195,8 @@ impl Limits {
             // A resonance that the sampling cannot follow is only a little more mass; nearer to half of the sampling
             // frequency it would explain how the counts of an even motion beat with the samples.
             Quantity::Frequency => (low, 0.25 / self.interval),
-            // At the least of it nothing is lost, at the most more than by a gain that falls from the first newton on.
-            Quantity::PerForce => (0.1 * LOST / self.force.most, 2.5 * LOST / self.force.most),
+            // One over a force that is reached, or would be with ten times as much.
+            Quantity::PerForce => (0.1 / self.force.most, 1.0 / self.force.most),
             // What settles within two samples cannot be told from what is there at once.
             Quantity::Time => (2.0 * self.interval, f64::INFINITY),
             _ => (low, high),

@@ -52,7 +52,7 @@ pub enum Remains {
         /// What it was found to be.
         course: Course,
     },
-    /// A model that is not what it is called predicts no worse than effects that would be named.
+    /// A model that is not what it is called predicts better than effects that would be named.
     Outdone {
         /// Its effects.
         by: Vec<String>,

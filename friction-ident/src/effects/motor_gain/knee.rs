@@ -5,17 +5,23 @@ use crate::axis::Quantity;
 use crate::effects::{About, Advance, CDynamics, Drive, Effect, Parameter, Parameters, Slot};
 use crate::simd::{exp, limited, ln, vectorised};
 
-/// `F = u / (1 + (c |u|)^n)^(1/n)`: from a gain that falls from the first ampere on (`n` = 1, the form `current`) over
-/// what is close to a hyperbolic tangent (2.5) to a limit of the drive.
+/// Of the command `1/c` a third is lost, however sharp the knee is: from a gain that falls from the first newton on (`n` = 1,
+/// the form `current`) over what is close to a hyperbolic tangent (2.5) to a limit of the drive.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Knee;
 
 static ABOUT: About = About {
     name: "motor-gain:knee",
     title: "gain that falls beyond a knee (magnetic saturation)",
-    equation: "F = u / (1 + (c |u|)^n)^(1/n)",
+    equation: "F = u / (1 + (1.5^n - 1) (c |u|)^n)^(1/n)",
     parameters: &[
-        Parameter::shape("c", "one over the largest force", Quantity::PerForce, (1e-6, 1e3), 1e-3),
+        Parameter::shape(
+            "c",
+            "one over the command of which a third is lost",
+            Quantity::PerForce,
+            (1e-6, 1e3),
+            1e-3,
+        ),
         Parameter::shape("n", "sharpness of the knee", Quantity::One, (1.0, 8.0), 2.5).linear(),
     ],
     slots: &[Slot::Drive],
@@ -30,7 +36,7 @@ impl Effect for Knee {
 
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
-            drive: "force /= pow(1.0 + pow({c} * fabs(force), {n}), 1.0 / {n});",
+            drive: "force /= pow(1.0 + (pow(1.5, {n}) - 1.0) * pow({c} * fabs(force), {n}), 1.0 / {n});",
             ..CDynamics::NONE
         })
     }
@@ -52,9 +58,10 @@ impl Drive for Knee {
     }
 
     fn invert(&self, p: &[f64], _time: &[f64], force: &mut [f64]) {
+        let most = 1.0 / inverse_limit(p[0], p[1]);
         for force in force {
-            // No command yields more than `1/c`: there the largest one that is sensible.
-            let left = 1.0 - (p[0] * force.abs()).powf(p[1]);
+            // No command yields more: there the largest one that is sensible.
+            let left = 1.0 - (force.abs() / most).powf(p[1]);
             *force /= left.max(0.0).powf(1.0 / p[1]).max(LEAST_GAIN);
         }
     }
@@ -65,13 +72,21 @@ const LEAST_GAIN: f64 = 0.01;
 /// So little that its power is 0 to rounding, and its logarithm is finite.
 const TINY: f64 = 1e-150;
 
+/// One over the force that no command exceeds: `(1.5^n - 1)^(1/n) c`, so that it overflows nowhere.
+#[inline(always)]
+fn inverse_limit(c: f64, n: f64) -> f64 {
+    const LN: f64 = 0.405_465_108_108_164_4;
+    1.5 * c * exp(ln(1.0 - exp(-n * LN)) / n)
+}
+
 vectorised! {
     fn lose(bend: &[f64], sharpness: &[f64], force: &mut [f64]) {
         for ((force, c), n) in force.iter_mut().zip(bend).zip(sharpness) {
-            let share = c * force.abs();
+            let inverse = inverse_limit(*c, *n);
+            let share = inverse * force.abs();
             // Either side of the knee by the power of what is below 1, so that none overflows.
             let power = exp(n * ln(share.min(1.0 / share).max(TINY)));
-            *force = limited(*force, 1.0 / c) * exp(-ln(1.0 + power) / n);
+            *force = limited(*force, 1.0 / inverse) * exp(-ln(1.0 + power) / n);
         }
     }
 }
@@ -83,10 +98,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn little_is_lost_below_the_knee_and_no_more_than_the_knee_is_left_beyond() {
-        let force = through(&Knee, &[0.01, 2.0], &[1.0, 75.0, -75.0, 2400.0]);
-        for (force, expected) in force.iter().zip([0.99995, 60.0, -60.0, 99.9133]) {
-            assert!((force - expected).abs() < 1e-4, "{force} {expected}");
+    fn a_third_of_the_stated_command_is_lost_however_sharp_the_knee_is() {
+        for n in [1.0, 2.5, 8.0] {
+            let force = through(&Knee, &[0.01, n], &[100.0, -100.0]);
+            let third = 100.0 / 1.5;
+            assert!(
+                (force[0] - third).abs() < 1e-9 && (force[1] + third).abs() < 1e-9,
+                "{force:?}"
+            );
         }
         assert_eq!(through(&Knee, &[0.01, 2.0], &[0.0]), [0.0]);
     }
@@ -94,20 +113,17 @@ mod tests {
     #[test]
     fn it_comes_from_the_gain_that_falls_at_once_and_goes_to_a_limit() {
         let commands = [-80.0, 30.0, 110.0];
-        let [falls, at_once] =
-            [through(&Knee, &[0.01, 1.0], &commands), through(&Current, &[0.01], &commands)];
-        assert!(
-            falls.iter().zip(&at_once).all(|(a, b)| (a - b).abs() < 1e-9),
-            "{falls:?} {at_once:?}"
-        );
-        let sharp = through(&Knee, &[0.01, 60.0], &[-80.0, 30.0]);
+        let [falls, at_once] = [(&Knee as &dyn Drive, &[0.02, 1.0][..]), (&Current, &[0.01])]
+            .map(|(effect, p)| through(effect, p, &commands));
+        assert!(falls.iter().zip(&at_once).all(|(a, b)| (a - b).abs() < 1e-9), "{falls:?}");
+        let sharp = through(&Knee, &[1.0 / 150.0, 60.0], &[-80.0, 30.0]);
         assert!((sharp[0] + 80.0).abs() < 1e-4 && (sharp[1] - 30.0).abs() < 1e-9, "{sharp:?}");
     }
 
     #[test]
     fn a_force_that_no_command_yields_has_a_finite_one() {
         let mut force = [150.0];
-        Knee.invert(&[0.01, 2.0], &[0.0], &mut force);
+        Knee.invert(&[0.02, 2.0], &[0.0], &mut force);
         assert!(force[0].is_finite());
     }
 }

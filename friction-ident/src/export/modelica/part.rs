@@ -200,7 +200,7 @@ impl Part {
             "motor-gain" => drive("{g}*@in"),
             "motor-gain:direction" => drive("@in + {dg}*abs(@in)"),
             "motor-gain:current" => drive("@in/(1 + {c}*abs(@in))"),
-            "motor-gain:knee" => drive("@in/(1 + ({c}*abs(@in))^{n})^(1/{n})"),
+            "motor-gain:knee" => drive("@in/(1 + (1.5^{n} - 1)*({c}*abs(@in))^{n})^(1/{n})"),
             "motor-gain:ripple" => Self {
                 smooth: "(-drive*({a}*sin(2*pi*x/{l}) + {b}*cos(2*pi*x/{l})))".into(),
                 ..Self::default()

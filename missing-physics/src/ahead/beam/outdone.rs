@@ -1,8 +1,8 @@
 //! Whether a model that was refused predicts better than the effects that were found.
 //!
 //! What ends at a limit, or lost what makes it that effect, is not named. It still shows how much of the error as few
-//! effects can foretell. Where those that would be named in its place foretell no more, nothing says that they are the cause
-//! and not an imitation of what it imitates, unless with them a base that is not complete errs no more than the sensors make: then
+//! effects can foretell. Where those that would be named in its place foretell less, they imitate a part of what is
+//! missing and are not its cause, unless with them a base that is not complete errs no more than the sensors make: then
 //! nothing is left that they do not foretell. So do those that leave something where a refused model of more effects leaves
 //! nothing without them. Effects that the refused model has, too, stay, unless it goes on from all of them and what it does
 //! beyond them is the greater part: then they are a smaller part of something else. And where nothing else was found, but a
@@ -39,9 +39,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .max_by(|a, b| a.2.nats.total_cmp(&b.2.nats))?;
         let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
         let lesser = self.is_lesser_part(base, last, refused);
-        // Of names that leave something and a model that is not what it is called, as good, neither is to be believed.
-        let least = if added.is_empty() { clear } else { -clear };
-        let outcome = if by.nats > least { Outcome::Rival } else { Outcome::Worse };
+        let outcome = if by.nats > clear { Outcome::Rival } else { Outcome::Worse };
         let because = Some(Reason::Refused { refusal: refusal.clone() });
         self.note(added.len(), refused, last, by, outcome, because);
         if outcome == Outcome::Worse {

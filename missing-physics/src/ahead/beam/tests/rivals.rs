@@ -173,17 +173,7 @@ fn what_a_rival_leaves_is_compared_with_a_refused_set_too() {
 }
 
 #[test]
-fn a_refused_set_takes_back_what_leaves_something_where_it_is_as_good() {
-    let plant = Plant::new(13, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
-    let (without, remains) = outdone(&plant, &[(WAVE, &[0.05])], &[(TWIN, &[0.05])]).unwrap();
-    assert!(without.effects(&plant).is_empty());
-    let Remains::Outdone { instead_of, nats, .. } = remains else { panic!("{remains:?}") };
-    assert_eq!(instead_of, ["wave"]);
-    assert!((-80.0..0.0).contains(&nats), "{nats}");
-}
-
-#[test]
-fn a_refused_set_takes_nothing_back_where_it_predicts_worse() {
+fn a_refused_set_takes_nothing_back_where_it_predicts_no_better() {
     let plant = Plant::new(13, &[(WAVE, &[0.05]), (BEAT, &[0.05])]);
     let (push, wave, both) = ((PUSH, &[0.01][..]), (WAVE, &[0.05][..]), (BOTH, &[1e-4][..]));
     assert!(outdone(&plant, &[push], &[wave]).is_some());
