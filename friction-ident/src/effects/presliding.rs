@@ -41,7 +41,7 @@ const STIFFNESS: Parameter = Parameter::shape(
     "k_t",
     "tangential stiffness of the contact",
     Quantity::Stiffness,
-    (1e4, 1e9),
+    (1.0, 1e9),
     5e6,
 );
 const SHOWS: &str =

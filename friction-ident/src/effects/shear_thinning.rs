@@ -9,6 +9,8 @@ use crate::simd::{exp, ln, tanh, vectorised};
 enum Law {
     /// At once, as the lubricant can bear no more: `tanh(v / v_n)`.
     Limit,
+    /// As molecules jump over barriers that shear lowers (Eyring): `asinh(v / v_n)`.
+    Eyring,
     /// Little by little, as its molecules align (fluid of Cross): `u / (1 + |u|^m)` of `u = v / v_n`.
     Cross,
 }
@@ -20,8 +22,9 @@ pub struct ShearThinning(Law);
 
 /// The default form.
 pub static SHEAR_THINNING: ShearThinning = ShearThinning(Law::Limit);
+static EYRING: ShearThinning = ShearThinning(Law::Eyring);
 static CROSS: ShearThinning = ShearThinning(Law::Cross);
-static FORMS: [&dyn Effect; 1] = [&CROSS];
+static FORMS: [&dyn Effect; 2] = [&EYRING, &CROSS];
 
 /// So little that its power is 0 to rounding, and its logarithm is finite.
 const TINY: f64 = 1e-150;
@@ -52,6 +55,19 @@ static ABOUT: About = About {
     reference: "B. Gecim, W. O. Winer, J. Lubrication Technology 102, 1980 (limiting shear stress)",
 };
 
+static EYRING_ABOUT: About = About {
+    name: "shear-thinning:eyring",
+    title: "viscous friction that rises with the logarithm of the speed (shear thinning)",
+    equation: "dF asinh(v/v_n)",
+    parameters: &[
+        Parameter::level("dF", "rise as the speed grows by e", Quantity::Force, 200.0, 4.0),
+        THINS,
+    ],
+    slots: &[Slot::SmoothForce],
+    shows: SHOWS,
+    reference: "H. Eyring, J. Chem. Phys. 4, 1936; S. Bair, High Pressure Rheology, 2007",
+};
+
 static CROSS_ABOUT: About = About {
     name: "shear-thinning:cross",
     title: "viscous friction that thins slowly (shear thinning)",
@@ -70,6 +86,7 @@ impl Effect for ShearThinning {
     fn about(&self) -> &'static About {
         match self.0 {
             Law::Limit => &ABOUT,
+            Law::Eyring => &EYRING_ABOUT,
             Law::Cross => &CROSS_ABOUT,
         }
     }
@@ -107,6 +124,11 @@ impl Effect for ShearThinning {
 }",
                 ..CLaw::NONE
             },
+            Law::Eyring => CLaw {
+                smooth: "force += {dF} * asinh(v / {v_n});",
+                damping: "damping += {dF} / sqrt({v_n} * {v_n} + v * v);",
+                ..CLaw::NONE
+            },
             Law::Cross => CLaw {
                 smooth: "force += {dF} * v / {v_n} / (1.0 + pow(fabs(v) / {v_n}, {m}));",
                 damping: "{
@@ -127,6 +149,7 @@ impl Effect for ShearThinning {
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
         match self.0 {
             Law::Limit => limited(p.get(0), p.get(1), m.velocity, out.force, out.damping),
+            Law::Eyring => eyring(p.get(0), p.get(1), m.velocity, out.force, out.damping),
             Law::Cross => cross(p.get(0), p.get(1), p.get(2), m.velocity, out.force, out.damping),
         }
     }
@@ -142,6 +165,20 @@ vectorised! {
             let part = tanh(velocity[i] * per_speed);
             force[i] += limit[i] * part;
             slope[i] += limit[i] * (1.0 - part * part) * per_speed;
+        }
+    }
+
+    fn eyring(rise: &[f64], speed: &[f64], velocity: &[f64], force: &mut [f64], slope: &mut [f64]) {
+        let n = force.len();
+        let (rise, speed) = (&rise[..n], &speed[..n]);
+        let (velocity, slope) = (&velocity[..n], &mut slope[..n]);
+        for i in 0..n {
+            let per_speed = 1.0 / speed[i];
+            let u = velocity[i] * per_speed;
+            let root = (1.0 + u * u).sqrt();
+            // asinh, odd to the last digit.
+            force[i] += rise[i] * ln(u.abs() + root).copysign(u);
+            slope[i] += rise[i] * per_speed / root;
         }
     }
 
@@ -178,6 +215,18 @@ mod tests {
         assert!((force - 4e-4).abs() < 1e-7 && (damping - 400.0).abs() < 0.1);
         let (force, damping) = smooth(&CROSS, &p, Point::at(0.0, -0.01));
         assert!((force + 2.0).abs() < 1e-12 && (damping - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn it_rises_with_the_logarithm_of_the_speed() {
+        let at = |v: f64| smooth(&EYRING, &[0.5, 0.01], Point::at(0.0, v));
+        assert!((at(1e-6).0 - 5e-5).abs() < 1e-9 && (at(1e-6).1 - 50.0).abs() < 1e-4);
+        assert!((at(20.0).0 - at(10.0).0 - 0.5 * 2f64.ln()).abs() < 1e-6);
+        for v in [-0.2, -0.01, 0.003, 0.4] {
+            assert!((at(v).0 + at(-v).0).abs() < 1e-15);
+            let slope = (at(v + 1e-7).0 - at(v - 1e-7).0) / 2e-7;
+            assert!((slope - at(v).1).abs() < 1e-6 * slope, "{v}");
+        }
     }
 
     #[test]

@@ -275,10 +275,11 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                         && self.p_value(&beside, *gain) <= self.thresholds.chance
                 };
                 let unknown = unknown.filter(enough).map(|(remains, _)| remains);
-                // What foretells most is told, but not what a refused model says of what nobody can see.
+                // What foretells most is told, but not what a refused model alone says of what nobody can see.
                 rival = rival.into_iter().chain(unknown).max_by(|a, b| gain(a).total_cmp(&gain(b)));
                 let unseen = costs.is_empty() && self.leaves_nothing(&climb.base);
-                rival = rival.filter(|rival| !(unseen && matches!(rival, Remains::Outdone { .. })));
+                let unnamed = |rival: &Remains| matches!(rival, Remains::Outdone { instead_of, .. } if instead_of.is_empty());
+                rival = rival.filter(|rival| !(unseen && unnamed(rival)));
                 return self.conclude(climb, &last, (costs, p_value), beside, rival);
             };
             let (size, cost) = (costs.len() - 1, negative(*cost));

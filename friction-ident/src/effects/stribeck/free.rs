@@ -1,6 +1,7 @@
 //! A friction curve of any shape over speed.
 
 use super::super::Extent;
+use super::super::{AsFound, Refused};
 use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Quantity, SHOWS, Slot};
 use crate::simd::{ln, vectorised};
 
@@ -152,6 +153,24 @@ impl Effect for Free {
         true
     }
 
+    /// Of a hump the curve lies below the straight line from rest to the top speed, whatever of it is taken for Coulomb and
+    /// viscous friction; above it lies that of a lubricant that thins.
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        let at_rest = found.values[0];
+        let line = KNOT_SPEEDS.map(|share| at_rest * (1.0 - share));
+        let beyond = found.values.iter().zip(line).map(|(level, line)| level - line);
+        let (above, below) = beyond.fold((0.0f64, 0.0f64), |(above, below), beyond| {
+            (above.max(beyond), below.max(-beyond))
+        });
+        (above > below).then_some(Refused {
+            name: "bulge",
+            value: above,
+            limit: below,
+            unit_of: "c_0",
+            meaning: "it rises fast, then slowly with the speed, as of a lubricant that thins",
+        })
+    }
+
     fn c_law(&self) -> Option<CLaw> {
         Some(CLaw {
             level: "{
@@ -283,6 +302,26 @@ mod tests {
         assert!(Free.hump(Parameters::new(&p, 3), &[0.0, 0.2e-3, 0.6e-3], &mut share));
         assert!((share[1] - 0.8).abs() < 1e-12);
         assert_eq!((share[0], share[2]), (1.0, 0.0));
+    }
+
+    #[test]
+    fn a_curve_that_rises_fast_and_then_slowly_is_none_whatever_is_taken_for_viscous() {
+        // Of 3 N at rest, and of a viscous friction that takes away what it had of 4 N up to the top speed.
+        for (hump, viscous) in [(3.0, 0.0), (3.0, 4.0), (-3.0, 0.0), (-3.0, 4.0)] {
+            let curve = |share: f64| hump / (1.0 + share / 0.05) - viscous * share;
+            let levels = KNOT_SPEEDS.map(|share| curve(share) - curve(1.0));
+            let values = [&levels[..], &[0.2]].concat();
+            let found = AsFound {
+                values: &values,
+                least: &[-9.0; FREE + 1],
+                most: &[9.0; FREE + 1],
+                mass: 1.0,
+                force: 1.0,
+                count: 1e-6,
+                give: 0.0,
+            };
+            assert_eq!(Free.refused(&found).is_some(), hump < 0.0, "{hump} {viscous}");
+        }
     }
 
     #[test]

@@ -136,6 +136,7 @@ impl Part {
             "gravity-pendulum" => smooth("{M}*sin(x - {q_0})"),
             "quadratic-drag" => smooth("{c}*v*abs(v)"),
             "shear-thinning" => smooth("{dF}*tanh(v/{v_n})"),
+            "shear-thinning:eyring" => smooth("{dF}*sign(v)*log(abs(v)/{v_n} + sqrt(1 + (v/{v_n})^2))"),
             "shear-thinning:cross" => smooth("{dF}*v/{v_n}/(1 + (abs(v)/{v_n})^{m})"),
             "asymmetry" => Self { smooth: "{dF_v}*abs(v)".into(), ..level("{dF_C}*@s") },
             "drift" => Self {

@@ -115,6 +115,26 @@ fn beside_a_base_that_leaves_nothing_a_rival_is_no_finding() {
     assert!(!search.leaves_nothing(&climb.base));
 }
 
+#[test]
+fn what_a_refused_set_takes_back_beside_a_base_that_leaves_nothing_is_not_nothing() {
+    let hidden: [(usize, &[f64]); 2] = [(PUSH, &[0.05]), (WAVE, &[0.1])];
+    let mut plant = Plant::new(18, &hidden);
+    plant.kin = Vec::new();
+    for (best, told) in [(&hidden[..1], true), (&[], false)] {
+        let mut climb = climb(&plant, Vec::new());
+        climb.base.scale = 0.9 * crate::ahead::testing::NOISE;
+        climb.base = lacks(&climb.base, 0.9, 0.5);
+        let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
+        climb.refused.push((node(&plant, &hidden[1..]), refusal));
+        let search = search(&plant, Thresholds { share: 0.0, ..narrow() });
+        assert!(search.leaves_nothing(&climb.base));
+        let found = search.finish_grown(climb, node(&plant, best));
+        assert!(found.added.is_empty());
+        let outdone = matches!(found.rival, Some(Remains::Outdone { .. }));
+        assert_eq!(outdone, told, "{:?}", found.rival);
+    }
+}
+
 /// What a refused set does to the last model.
 fn outdone(
     plant: &Plant,
