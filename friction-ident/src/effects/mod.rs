@@ -7,6 +7,7 @@
 mod about;
 mod apart;
 mod as_found;
+mod bend;
 pub mod c_dynamics;
 mod c_law;
 mod cosines;

@@ -1,5 +1,7 @@
 //! Saturation of the drive.
 
+mod soft;
+
 use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
@@ -10,19 +12,34 @@ use crate::simd::limited;
 #[derive(Clone, Copy, Debug)]
 pub struct Saturation;
 
+static FORMS: [&dyn Effect; 1] = [&soft::Soft];
+
+const LIMIT: Parameter =
+    Parameter::shape("u_max", "largest force", Quantity::Force, (1.0, 1e4), 300.0);
+const SHOWS: &str =
+    "a residual while the command is high; a spike at the end of the command's histogram";
+
 static ABOUT: About = About {
     name: "saturation",
     title: "saturation of the drive",
     equation: "F = clip(u, +-u_max)",
-    parameters: &[Parameter::shape("u_max", "largest force", Quantity::Force, (1.0, 1e4), 300.0)],
+    parameters: &[LIMIT],
     slots: &[Slot::Drive],
-    shows: "a residual while the command is high; a spike at the end of the command's histogram",
+    shows: SHOWS,
     reference: "W. Leonhard, Control of Electrical Drives, Springer",
 };
 
 impl Effect for Saturation {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("saturation:soft")
     }
 
     fn c_dynamics(&self) -> Option<CDynamics> {

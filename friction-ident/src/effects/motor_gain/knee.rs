@@ -2,8 +2,9 @@
 //! voltage.
 
 use crate::axis::Quantity;
+use crate::effects::bend::bent;
 use crate::effects::{About, Advance, CDynamics, Drive, Effect, Parameter, Parameters, Slot};
-use crate::simd::{exp, limited, ln, vectorised};
+use crate::simd::{exp, ln, vectorised};
 
 /// Of the command `1/c` a third is lost, however sharp the knee is: from a gain that falls from the first newton on (`n` = 1,
 /// the form `current`) over what is close to a hyperbolic tangent (2.5) to a limit of the drive.
@@ -69,10 +70,9 @@ impl Drive for Knee {
 
 /// Least share of the gain that a command is told for.
 const LEAST_GAIN: f64 = 0.01;
-/// So little that its power is 0 to rounding, and its logarithm is finite.
-const TINY: f64 = 1e-150;
 
 /// One over the force that no command exceeds: `(1.5^n - 1)^(1/n) c`, so that it overflows nowhere.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
 fn inverse_limit(c: f64, n: f64) -> f64 {
     const LN: f64 = 0.405_465_108_108_164_4;
@@ -82,11 +82,7 @@ fn inverse_limit(c: f64, n: f64) -> f64 {
 vectorised! {
     fn lose(bend: &[f64], sharpness: &[f64], force: &mut [f64]) {
         for ((force, c), n) in force.iter_mut().zip(bend).zip(sharpness) {
-            let inverse = inverse_limit(*c, *n);
-            let share = inverse * force.abs();
-            // Either side of the knee by the power of what is below 1, so that none overflows.
-            let power = exp(n * ln(share.min(1.0 / share).max(TINY)));
-            *force = limited(*force, 1.0 / inverse) * exp(-ln(1.0 + power) / n);
+            *force = bent(*force, inverse_limit(*c, *n), *n);
         }
     }
 }

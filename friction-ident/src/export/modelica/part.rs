@@ -136,7 +136,9 @@ impl Part {
             "gravity-pendulum" => smooth("{M}*sin(x - {q_0})"),
             "quadratic-drag" => smooth("{c}*v*abs(v)"),
             "shear-thinning" => smooth("{dF}*tanh(v/{v_n})"),
-            "shear-thinning:eyring" => smooth("{dF}*sign(v)*log(abs(v)/{v_n} + sqrt(1 + (v/{v_n})^2))"),
+            "shear-thinning:eyring" => {
+                smooth("{dF}*sign(v)*log(abs(v)/{v_n} + sqrt(1 + (v/{v_n})^2))")
+            }
             "shear-thinning:cross" => smooth("{dF}*v/{v_n}/(1 + (abs(v)/{v_n})^{m})"),
             "asymmetry" => Self { smooth: "{dF_v}*abs(v)".into(), ..level("{dF_C}*@s") },
             "drift" => Self {
@@ -210,6 +212,7 @@ impl Part {
                 Self { smooth: format!("(-({})*drive)", cosines(6)), ..along_stroke() }
             }
             "saturation" => drive("max(-{u_max}, min({u_max}, @in))"),
+            "saturation:soft" => drive("@in/(1 + (abs(@in)/{u_max})^{n})^(1/{n})"),
             // A lag or delay of nothing is none: its equation would be singular.
             "actuator-lag" | "actuator-lag:second-order" | "input-delay"
                 if term.values()[0] <= 0.0 =>
