@@ -19,10 +19,15 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let top = &sets[0];
             let gain = self.comparison.compare(&best, top).nats;
             let near = self.thresholds.clear(gain);
-            let simplest = sets
+            let as_good: Vec<&Node> = sets
                 .iter()
                 .take(6)
                 .filter(|set| self.comparison.compare(set, top).nats <= near)
+                .collect();
+            let simplest = as_good
+                .iter()
+                .copied()
+                .filter(|set| !as_good.iter().any(|other| self.is_bettered(set, other)))
                 .min_by(|a, b| {
                     let fewer = self.parameters(a).cmp(&self.parameters(b));
                     fewer.then(a.deviation.total_cmp(&b.deviation))
@@ -46,6 +51,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             best = set;
         }
         best
+    }
+
+    /// Whether another set predicts better with fewer parameters: a flexible form counts as its effect does, but there is no
+    /// reason to tell it then.
+    fn is_bettered(&self, set: &Node, other: &Node) -> bool {
+        other.model.values.len() < set.model.values.len()
+            && self.comparison.compare(set, other).nats > 0.0
     }
 
     /// Takes out what is not needed, and says what each of the rest is worth.
