@@ -190,6 +190,7 @@ IN_MODELICA = (
     {"motor-gain:ripple": {"a": 0.1, "b": 0.05, "l": 0.05}},
     {"motor-gain:stroke": {**{f"c_{k}": 0.1 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
     {"actuator-lag:second-order": {"tau": 4e-3, "zeta": 0.4}, "encoder": {"a": 1e-4, "b": 1e-4, "p": 5e-3}},
+    {"encoder:harmonics": {"a": 1e-4, "b": 1e-4, "a_2": 5e-5, "b_2": -3e-5, "p": 5e-3}},
     {"input-delay": {"T_d": 3.4e-3}},
     {"flexible-coupling": {"m_L": 0.8, "f": 15.0, "zeta": 0.05}},
     {"flexible-coupling:friction": {"m_L": 0.8, "f": 15.0, "zeta": 0.05, "F_L": 1.5, "d_L": 2.0}},

@@ -1,5 +1,7 @@
 //! The encoder: an error within each period of its grating, or within each turn.
 
+mod harmonics;
+
 use crate::effects::CDynamics;
 use std::f64::consts::TAU;
 
@@ -17,6 +19,21 @@ use crate::simd::{sin_cos_of_turns, vectorised};
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder;
 
+static FORMS: [&dyn Effect; 1] = [&harmonics::Harmonics];
+
+const PERIOD: Parameter = Parameter::shape(
+    "p",
+    "period: of the grating, or way per turn",
+    Quantity::Length,
+    (1e-6, 0.05),
+    5e-3,
+);
+const PERIODIC: Periodic =
+    Periodic { period: "p", of: Repeats::Sensor, ranked: true, columns: None, shortest: None };
+const SHOWS: &str =
+    "a line whose frequency is speed/p and whose force grows with the square of the speed";
+const REFERENCE: &str = "P. L. M. Heydemann, Applied Optics 20, 1981";
+
 static ABOUT: About = About {
     name: "encoder",
     title: "periodic error of the encoder (sub-division, eccentricity)",
@@ -24,17 +41,11 @@ static ABOUT: About = About {
     parameters: &[
         Parameter::signed("a", "sine amplitude", Quantity::Length, 1e-4, 1e-6),
         Parameter::signed("b", "cosine amplitude", Quantity::Length, 1e-4, 1e-6),
-        Parameter::shape(
-            "p",
-            "period: of the grating, or way per turn",
-            Quantity::Length,
-            (1e-6, 0.05),
-            5e-3,
-        ),
+        PERIOD,
     ],
     slots: &[Slot::Sensor],
-    shows: "a line whose frequency is speed/p and whose force grows with the square of the speed",
-    reference: "P. L. M. Heydemann, Applied Optics 20, 1981",
+    shows: SHOWS,
+    reference: REFERENCE,
 };
 
 /// Counts that a wave is larger than: some ten places where an axis rests again and again, each rounded by 0.29 counts (rms),
@@ -69,6 +80,14 @@ impl Effect for Encoder {
         &ABOUT
     }
 
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some("encoder:harmonics")
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             shown: "{
@@ -85,10 +104,7 @@ impl Effect for Encoder {
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        let (value, limit) = (found.values[0].hypot(found.values[1]), COUNTS * found.count);
-        let meaning = "it is as small as what rounding to counts makes of a few places at rest";
-        let refused = Refused { name: "amplitude", value, limit, unit_of: "a", meaning };
-        (value <= limit).then_some(refused)
+        as_small_as_rounding(&found.values[..2], found)
     }
 
     fn told_apart(&self) -> &'static [Apart] {
@@ -104,8 +120,7 @@ impl Effect for Encoder {
     }
 
     fn periodic(&self) -> Option<Periodic> {
-        let (period, of) = ("p", Repeats::Sensor);
-        Some(Periodic { period, of, ranked: true, columns: None, shortest: None })
+        Some(PERIODIC)
     }
 
     fn in_recording(&self, values: &[f64], own: Own) -> Option<Vec<f64>> {
@@ -121,16 +136,28 @@ impl Sensor for Encoder {
     }
 
     fn correct(&self, p: &[f64], shown: &mut Shown<'_>) {
-        let [a, b, period] = [p[0], p[1], p[2]];
-        let w = TAU / period;
-        for i in 0..shown.position.len() {
-            let (v, wave) = (shown.velocity[i], (w * shown.position[i]).sin_cos());
-            let (sine, cosine) = feigned(wave, period, v, shown.acceleration[i], shown.cutoff);
-            let part = passed(v.abs() / period, shown.cutoff);
-            shown.position[i] -= part * (a * wave.0 + b * wave.1);
-            shown.velocity[i] -= part * w * v * (a * wave.1 - b * wave.0);
-            shown.acceleration[i] -= a * sine + b * cosine;
-        }
+        corrected((p[0], p[1]), p[2], shown);
+    }
+}
+
+/// Why waves of these amplitudes are none, if so.
+fn as_small_as_rounding(amplitudes: &[f64], found: &AsFound<'_>) -> Option<Refused> {
+    let value = amplitudes.iter().map(|a| a * a).sum::<f64>().sqrt();
+    let limit = COUNTS * found.count;
+    let meaning = "it is as small as what rounding to counts makes of a few places at rest";
+    (value <= limit).then_some(Refused { name: "amplitude", value, limit, unit_of: "a", meaning })
+}
+
+/// Takes a wave out of a motion that was shown with it.
+fn corrected((a, b): (f64, f64), period: f64, shown: &mut Shown<'_>) {
+    let w = TAU / period;
+    for i in 0..shown.position.len() {
+        let (v, wave) = (shown.velocity[i], (w * shown.position[i]).sin_cos());
+        let (sine, cosine) = feigned(wave, period, v, shown.acceleration[i], shown.cutoff);
+        let part = passed(v.abs() / period, shown.cutoff);
+        shown.position[i] -= part * (a * wave.0 + b * wave.1);
+        shown.velocity[i] -= part * w * v * (a * wave.1 - b * wave.0);
+        shown.acceleration[i] -= a * sine + b * cosine;
     }
 }
 

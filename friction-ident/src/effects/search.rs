@@ -153,8 +153,14 @@ mod tests {
             .filter(|effect| periodic(**effect).is_some())
             .map(|effect| effect.about().name)
             .collect();
-        let expected =
-            ["ripple", "ripple:harmonics", "ripple:direction", "motor-gain:ripple", "encoder"];
+        let expected = [
+            "ripple",
+            "ripple:harmonics",
+            "ripple:direction",
+            "motor-gain:ripple",
+            "encoder",
+            "encoder:harmonics",
+        ];
         assert_eq!(found, expected);
         // Asked for its law alone, the plain ripple would be recognised as well, and nothing else.
         let by_law = ALL.iter().filter(|effect| repeats_by_law(**effect).is_some());

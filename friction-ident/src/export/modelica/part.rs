@@ -244,6 +244,12 @@ impl Part {
                 shown: "@in + {a}*sin(2*pi*(@in)/{p}) + {b}*cos(2*pi*(@in)/{p})".into(),
                 ..Self::default()
             },
+            "encoder:harmonics" => Self {
+                shown: "@in + {a}*sin(2*pi*(@in)/{p}) + {b}*cos(2*pi*(@in)/{p}) \
+                        + {a_2}*sin(4*pi*(@in)/{p}) + {b_2}*cos(4*pi*(@in)/{p})"
+                    .into(),
+                ..Self::default()
+            },
             "flexible-coupling" => coupling(),
             "flexible-coupling:friction" => coupling_with_friction(""),
             "flexible-coupling:load" => coupling_with_friction("{}_x"),
