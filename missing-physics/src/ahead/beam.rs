@@ -387,10 +387,10 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.budget(node) <= 1.0 && (!self.is_complete(base) || all().unwrap_or(false))
     }
 
-    /// Whether a model errs hardly more than the sensors make, and lacks no force beyond doubt.
+    /// Whether a model errs no more than the sensors make, and lacks no force beyond doubt.
     fn leaves_nothing(&self, node: &Node) -> bool {
         let in_doubt = |(force, band)| force <= self.thresholds.local * band;
-        self.budget(node) < INSIDE && node.lacks(self.ahead).is_some_and(in_doubt)
+        self.budget(node) <= 1.0 && node.lacks(self.ahead).is_some_and(in_doubt)
     }
 
     /// Terms of a node that the base does not have, in the order of the model.

@@ -72,7 +72,6 @@ impl Drive for Knee {
 const LEAST_GAIN: f64 = 0.01;
 
 /// One over the force that no command exceeds: `(1.5^n - 1)^(1/n) c`, so that it overflows nowhere.
-#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
 fn inverse_limit(c: f64, n: f64) -> f64 {
     const LN: f64 = 0.405_465_108_108_164_4;

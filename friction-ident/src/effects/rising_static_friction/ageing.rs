@@ -28,14 +28,14 @@ static ABOUT: About = About {
             "distance over which contacts are renewed",
             Quantity::Length,
             // The size of asperities; over a longer way it would be any memory of a first order.
-            (1e-7, 1e-2),
+            (1e-7, 1e-4),
             1e-5,
         ),
         Parameter::shape(
             "v_c",
             "velocity above which hardly anything is left",
             Quantity::Velocity,
-            (1e-6, 10.0),
+            (1e-6, 0.5),
             1e-3,
         ),
     ],
