@@ -275,6 +275,7 @@ impl Ahead for View<'_> {
     fn relatives(&self, model: &Fitted) -> Vec<Fitted> {
         let mut related = self.family.related_second_bodies(model);
         related.extend(self.family.other_forms_of_companion(model));
+        related.extend(self.family.other_lateness(model));
         related
     }
 

@@ -222,6 +222,28 @@ impl FrictionFamily {
         others().unwrap_or_default()
     }
 
+    /// The same with another effect that makes the force as late, where the last term does: the first order hardly tells
+    /// what a delay of several samples would do from what a lag does.
+    pub(super) fn other_lateness(&self, model: &Fitted) -> Vec<Fitted> {
+        let others = || {
+            let place = model.terms.len().checked_sub(1)?;
+            let last = model.terms[place];
+            let late = self.effect(last)?.lateness(&self.values_in_full(model, place)?)?;
+            let main_of = |term: usize| self.form_of(term).unwrap_or(term);
+            // A delay or a time constant alone; what has a second one is a form of that.
+            let is_other = |term: &usize| {
+                let one = self.terms[*term].parameters.len() == 1;
+                let effect = self.effect(*term).filter(|_| one && main_of(*term) != main_of(last));
+                effect.is_some_and(|effect| effect.lateness(&[late]).is_some())
+            };
+            let without = model.without(self, last);
+            let others = (1..self.terms.len()).filter(is_other);
+            let others = others.filter(|term| self.joins(&without, *term));
+            Some(others.map(|term| without.with(term, &[late])).collect())
+        };
+        others().unwrap_or_default()
+    }
+
     /// The last term of a model, if it is a second body.
     fn last_second_body(&self, model: &Fitted) -> Option<(usize, &'static SecondBody)> {
         let &term = model.terms.last().filter(|term| self.is_second_body(**term))?;
@@ -392,6 +414,27 @@ mod tests {
         // What acts on nothing, and what acts on nothing that is there.
         assert!(of(&["mass", "stribeck", "coulomb"]).is_empty());
         assert!(of(&["mass", "coulomb", "frictional-memory"]).is_empty());
+    }
+
+    #[test]
+    fn a_lag_is_tried_as_a_delay_that_comes_as_late_and_the_other_way_round() {
+        let family = family();
+        let others = |last: &str, values: &[(&str, f64)]| -> Vec<(String, f64)> {
+            let model = model(&family, &["mass", "coulomb", last], values);
+            let named = |other: Fitted| {
+                assert_eq!(other.terms[..2], model.terms[..2]);
+                let [.., term] = other.terms[..] else { panic!() };
+                (family.terms[term].name.clone(), other.values[other.values.len() - 1])
+            };
+            family.other_lateness(&model).into_iter().map(named).collect()
+        };
+        let delay = |late| vec![("input-delay".to_owned(), late)];
+        assert_eq!(others("actuator-lag", &[("tau", 4e-3)]), delay(4e-3));
+        let second = [("tau", 3e-3), ("zeta", 0.75)];
+        assert_eq!(others("actuator-lag:second-order", &second), delay(2.0 * 0.75 * 3e-3));
+        let lag = vec![("actuator-lag".to_owned(), 5e-3)];
+        assert_eq!(others("input-delay", &[("T_d", 5e-3)]), lag);
+        assert!(others("stribeck", &[]).is_empty());
     }
 
     #[test]
