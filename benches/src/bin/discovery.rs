@@ -48,6 +48,10 @@ fn main() {
     cases.retain(|case| args.only.as_ref().is_none_or(|only| case.name.contains(only.as_str())));
     let levels: Vec<Level> = args.levels.iter().filter_map(|name| Level::parse(name)).collect();
     if let Some(folder) = &args.write {
+        if let Err(error) = std::fs::create_dir_all(folder) {
+            eprintln!("{}: {error}", folder.display());
+            std::process::exit(2);
+        }
         for (case, level) in cases.iter().flat_map(|case| levels.iter().map(move |l| (case, *l))) {
             for seed in args.first..args.first + args.seeds {
                 save(folder, case, level, excitation, seed);
