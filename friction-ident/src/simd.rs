@@ -109,6 +109,15 @@ pub(crate) fn ln(x: f64) -> f64 {
     exponent * std::f64::consts::LN_2 + 2.0 * f * sum
 }
 
+/// `x^n` of an `x` that is not negative and a positive `n`.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(crate) fn power(x: f64, n: f64) -> f64 {
+    // So little that its power is 0 to rounding, and its logarithm is finite.
+    const TINY: f64 = 1e-150;
+    exp(n * ln(x.max(TINY)))
+}
+
 /// One over the factorials of 0 to 13.
 const OF_EXP: [f64; 14] = {
     let mut out = [1.0; 14];
@@ -268,6 +277,14 @@ mod tests {
                 "{x}: {found} {exact}"
             );
         }
+    }
+
+    #[test]
+    fn a_power_is_that_of_the_standard_library_and_none_of_nothing() {
+        for (x, n) in [(1e-9f64, 0.2), (0.3, 8.0), (1.0, 2.5), (700.0, 1.7)] {
+            assert!((super::power(x, n) / x.powf(n) - 1.0).abs() < 1e-13, "{x} {n}");
+        }
+        assert!(super::power(0.0, 0.2) < 1e-29);
     }
 
     #[test]

@@ -21,7 +21,7 @@ fn joint() -> Recording {
     let reference = control::from_positions(1e-3, positions.collect());
     let setup = Setup { encoder_resolution: 1e-3, ..Setup::default() };
     let run = closed_loop(&plant, &reference, &mut Pd::new(60.0, 3.0), &setup).unwrap();
-    seen("joint", &run.recording, run.command.clone())
+    seen("joint", &run.recording, run.command)
 }
 
 #[test]

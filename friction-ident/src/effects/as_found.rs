@@ -19,6 +19,9 @@ pub struct AsFound<'a> {
     pub give: f64,
 }
 
+/// What a fit left within this factor of an end of its search is there.
+pub const AT_END: f64 = 1.001;
+
 impl AsFound<'_> {
     /// Why an effect is none whose parameter at place `k`, of this name, ended within a `factor` of where its search begins.
     pub fn at_least(

@@ -1,9 +1,6 @@
 //! A force that bends towards a limit: what knees of gains and soft limits of drives have in common.
 
-use crate::simd::{exp, limited, ln};
-
-/// So little that its power is 0 to rounding, and its logarithm is finite.
-const TINY: f64 = 1e-150;
+use crate::simd::{exp, limited, ln, power};
 
 /// `u / (1 + |u inverse|^n)^(1/n)`: `u` while it is small, no more than one over `inverse`.
 #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
@@ -11,8 +8,8 @@ const TINY: f64 = 1e-150;
 pub(super) fn bent(u: f64, inverse: f64, n: f64) -> f64 {
     let share = inverse * u.abs();
     // Either side of the limit by the power of what is below 1, so that none overflows.
-    let power = exp(n * ln(share.min(1.0 / share).max(TINY)));
-    limited(u, 1.0 / inverse) * exp(-ln(1.0 + power) / n)
+    let beyond = power(share.min(1.0 / share), n);
+    limited(u, 1.0 / inverse) * exp(-ln(1.0 + beyond) / n)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 mod friction;
 
+use super::as_found::AT_END;
 use crate::effects::CDynamics;
 use std::f64::consts::TAU;
 
@@ -32,22 +33,20 @@ const ZETA: Parameter =
 /// sqrt((1 - 1/sqrt 2)/2).
 const SILENT: f64 = 0.383;
 
-/// A frequency within this factor of an end of its search is there: what swings so slowly takes the mass along, and hides how
-/// large that is; what swings so fast is not seen to swing.
-const AT: f64 = 1.001;
-
 /// Why a coupling is none. A force drives the mass, nothing blocks it: what rings are both bodies against each other, damped
-/// by `zeta sqrt(1 + m_L/m)`.
+/// by `zeta sqrt(1 + m_L/m)`. What swings as slowly as it may takes the mass along, and hides how large that is; what swings as
+/// fast as it may is not seen to swing.
 fn not_one(found: &AsFound<'_>) -> Option<Refused> {
     let zeta = found.values[2];
     let limit = silent(found.values, found.mass);
     let quiet =
         Refused { name: "zeta", value: zeta, limit, unit_of: "zeta", meaning: "nothing rings" };
-    let slow = found.at_least((1, "f"), AT, "it swings as slowly as it may");
+    let slow = found.at_least((1, "f"), AT_END, "it swings as slowly as it may");
     let (f, most) = (found.values[1], found.most[1]);
     let meaning = "it swings as fast as it may";
     let fast = Refused { name: "f", value: f, limit: most, unit_of: "f", meaning };
-    slow.or_else(|| (AT * f >= most).then_some(fast)).or_else(|| (zeta >= limit).then_some(quiet))
+    slow.or_else(|| (AT_END * f >= most).then_some(fast))
+        .or_else(|| (zeta >= limit).then_some(quiet))
 }
 
 /// Damping ratio from which on nothing rings.

@@ -1,8 +1,9 @@
 //! Viscous friction that saturates: the lubricant thins under shear.
 
+use super::as_found::AT_END;
 use super::{About, AsFound, CLaw, Effect, Motion, Parameter, Parameters, Refused, Slot, Smooth};
 use crate::axis::Quantity;
-use crate::simd::{exp, ln, tanh, vectorised};
+use crate::simd::{ln, power, tanh, vectorised};
 
 /// How the friction saturates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,11 +26,6 @@ pub static SHEAR_THINNING: ShearThinning = ShearThinning(Law::Limit);
 static EYRING: ShearThinning = ShearThinning(Law::Eyring);
 static CROSS: ShearThinning = ShearThinning(Law::Cross);
 static FORMS: [&dyn Effect; 2] = [&EYRING, &CROSS];
-
-/// So little that its power is 0 to rounding, and its logarithm is finite.
-const TINY: f64 = 1e-150;
-/// A speed below this multiple of the least one is at it.
-const AT_ONCE: f64 = 1.001;
 
 const LIMIT: Parameter = Parameter::level("dF", "limit at high speed", Quantity::Force, 200.0, 4.0);
 const THINS: Parameter = Parameter::shape(
@@ -143,7 +139,7 @@ impl Effect for ShearThinning {
     /// What is thin at any speed is a friction level, smoothed where the axis reverses.
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
         let meaning = "it thins at the lowest speed of its search: a friction level";
-        found.at_least((1, "v_n"), AT_ONCE, meaning)
+        found.at_least((1, "v_n"), AT_END, meaning)
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
@@ -189,7 +185,7 @@ vectorised! {
         for i in 0..n {
             let per_speed = 1.0 / speed[i];
             let u = velocity[i] * per_speed;
-            let thins = exp(exponent[i] * ln(u.abs() + TINY));
+            let thins = power(u.abs(), exponent[i]);
             let part = 1.0 / (1.0 + thins);
             force[i] += limit[i] * u * part;
             slope[i] += limit[i] * per_speed * part * part * (1.0 + (1.0 - exponent[i]) * thins);

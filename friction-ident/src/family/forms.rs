@@ -198,10 +198,9 @@ impl FrictionFamily {
     /// without this term.
     pub(super) fn other_forms_of_companion(&self, model: &Fitted) -> Vec<Fitted> {
         let others = || {
-            let main_of = |term: usize| self.form_of(term).unwrap_or(term);
-            let acts_on = self.effect(main_of(*model.terms.last()?))?.companion()?;
+            let acts_on = self.effect(self.main_of(*model.terms.last()?))?.companion()?;
             let main = self.terms.iter().position(|term| term.name == acts_on)?;
-            let of_main = |term: usize| main_of(term) == main;
+            let of_main = |term: usize| self.main_of(term) == main;
             let place =
                 model.terms.iter().position(|term| of_main(*term) && self.is_candidate(*term))?;
             let (now, old) = (model.terms[place], &model.values[model.range(self, place)]);
@@ -229,11 +228,11 @@ impl FrictionFamily {
             let place = model.terms.len().checked_sub(1)?;
             let last = model.terms[place];
             let late = self.effect(last)?.lateness(&self.values_in_full(model, place)?)?;
-            let main_of = |term: usize| self.form_of(term).unwrap_or(term);
             // A delay or a time constant alone; what has a second one is a form of that.
             let is_other = |term: &usize| {
                 let one = self.terms[*term].parameters.len() == 1;
-                let effect = self.effect(*term).filter(|_| one && main_of(*term) != main_of(last));
+                let effect =
+                    self.effect(*term).filter(|_| one && self.main_of(*term) != self.main_of(last));
                 effect.is_some_and(|effect| effect.lateness(&[late]).is_some())
             };
             let without = model.without(self, last);
@@ -242,6 +241,11 @@ impl FrictionFamily {
             Some(others.map(|term| without.with(term, &[late])).collect())
         };
         others().unwrap_or_default()
+    }
+
+    /// The effect that a term is a form of.
+    fn main_of(&self, term: usize) -> usize {
+        self.form_of(term).unwrap_or(term)
     }
 
     /// The last term of a model, if it is a second body.

@@ -3,12 +3,10 @@
 use super::{
     About, Advance, CDynamics, Drive, Effect, Parameter, Parameters, Quantity, SHOWS, Slot,
 };
+use crate::effects::as_found::AT_END;
 use crate::effects::bend::bent;
 use crate::effects::{AsFound, Refused};
 use crate::simd::vectorised;
-
-/// A sharpness below this multiple of the least one is at it.
-const SOFTEST: f64 = 1.001;
 
 /// `F = u / (1 + |u/u_max|^n)^(1/n)`.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +37,7 @@ impl Effect for Soft {
 
     /// What bends as softly as it may is a gain that falls.
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        found.at_least((1, "n"), SOFTEST, "it is as soft as it may be: a gain that falls")
+        found.at_least((1, "n"), AT_END, "it is as soft as it may be: a gain that falls")
     }
 
     fn c_dynamics(&self) -> Option<CDynamics> {
