@@ -110,7 +110,6 @@ pub(crate) fn ln(x: f64) -> f64 {
 }
 
 /// `x^n` of an `x` that is not negative and a positive `n`.
-#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
 pub(crate) fn power(x: f64, n: f64) -> f64 {
     // So little that its power is 0 to rounding, and its logarithm is finite.
