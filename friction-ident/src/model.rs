@@ -400,6 +400,11 @@ impl Model {
     pub fn acts_on(&self, slot: Slot) -> bool {
         self.terms.iter().any(|term| term.effect.about().acts_on(slot))
     }
+
+    /// Whether the force of the drive comes later than its command.
+    pub(crate) fn is_late(&self) -> bool {
+        self.terms.iter().any(|term| term.effect.lateness(&term.values).is_some())
+    }
 }
 
 fn check_mass(value: f64) -> Result<(), ModelError> {

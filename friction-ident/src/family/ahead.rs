@@ -19,6 +19,11 @@ use crate::predictor::{Predictor, Wave};
 const MOST_SAMPLES: usize = 8_000;
 /// Samples on which the trials of a term are ranked.
 const RANKED_ON: usize = 3_000;
+/// Length of the pieces of a search, s, and of those on which trials are ranked. What a contact holds where a piece begins is
+/// known from one motion before it alone, and is wrong until it slides: of pieces of 1 s that is much. To rank, many places count
+/// for more.
+const LONG: f64 = 2.5;
+const SHORT: f64 = 1.0;
 /// Starts of a second body that are fitted: its valleys are narrow.
 const SECOND_BODIES: usize = 3;
 /// Settings whose responses are kept.
@@ -62,11 +67,11 @@ impl OneAhead {
 
     /// The same of a part of the recording, where it is long: pieces spread over all of it.
     pub fn thinned(&self) -> Option<Self> {
-        self.predictor.thinned(MOST_SAMPLES).map(Self::of)
+        self.predictor.thinned(MOST_SAMPLES, LONG).map(Self::of)
     }
 
     fn of(predictor: Predictor) -> Self {
-        let part = predictor.thinned(RANKED_ON).map(|part| Arc::new(Self::whole(part)));
+        let part = predictor.thinned(RANKED_ON, SHORT).map(|part| Arc::new(Self::whole(part)));
         Self { part, ..Self::whole(predictor) }
     }
 

@@ -180,7 +180,8 @@ impl FrictionFamily {
         let of = |parameter: &str| self.value(model, name, parameter).unwrap_or(0.0);
         let tau = std::f64::consts::TAU;
         let to = body.related.and_then(|to| self.terms.iter().position(|term| term.name == to));
-        let Some((to, other)) = to.and_then(|to| Some((to, self.second_body(to)?))) else {
+        let open = to.filter(|to| !model.terms.contains(to));
+        let Some((to, other)) = open.and_then(|to| Some((to, self.second_body(to)?))) else {
             return Vec::new();
         };
         let value = |parameter: &str| match (parameter, other.along) {

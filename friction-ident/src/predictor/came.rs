@@ -87,7 +87,7 @@ mod tests {
         // A strip that begins amid a slide knows what is left of the reversal before it.
         let start = predictor.start(1000, 4000);
         assert!((start.came.unwrap().way - 0.01).abs() < 1e-4);
-        let part = predictor.thinned(1500).unwrap();
+        let part = predictor.thinned(1500, 1.0).unwrap();
         assert_eq!(part.came[1], predictor.came[part.origin[1]]);
     }
 }

@@ -39,6 +39,9 @@ use strips::{Strip, teams};
 /// Longest step of the simulation, s, and that with a second body.
 const STEP: f64 = 1.25e-3;
 const STEP_OF_TWO: f64 = 8e-4;
+/// Fewest steps from sample to sample where the force comes late: a step heeds its mean alone, and a delay of part of a
+/// sample is when within the sample it acts.
+const LATE_STEPS: f64 = 2.0;
 /// Process noise of the ladder: the smallest as a share of the rms force, the factor from rung to rung, and the
 /// number of rungs.
 const LEAST: f64 = 1e-3;
@@ -53,8 +56,6 @@ const FED_BACK: f64 = 0.02;
 const REST: f64 = 0.5;
 /// Errors in standard deviations beyond which they are cut off: a model that runs away.
 const LIMIT: f64 = 1e4;
-/// Length of the pieces of a thinned recording, s.
-const PIECE: f64 = 1.0;
 /// Fewest and most plants that advance together.
 const LANES: (usize, usize) = (8, 40);
 /// Why samples do not count.
@@ -111,6 +112,8 @@ pub struct Predictor {
     plant: (f64, f64),
     fed_back: f64,
     rest_speed: f64,
+    /// Typical time from sample to sample, s.
+    interval: f64,
 }
 
 impl Predictor {
@@ -137,6 +140,7 @@ impl Predictor {
             plant: (mass, damping),
             fed_back: FED_BACK * (stroke.1 - stroke.0),
             rest_speed: REST * noise.position / recording.interval().max(f64::MIN_POSITIVE),
+            interval: recording.interval(),
             position,
             force,
             noise,
@@ -184,9 +188,9 @@ impl Predictor {
         })
     }
 
-    /// The same on pieces of about `PIECE` s, spread over the recording, that have `most` samples together; nothing
+    /// The same on pieces of about `length` s, spread over the recording, that have `most` samples together; nothing
     /// where the recording has no more.
-    pub fn thinned(&self, most: usize) -> Option<Self> {
+    pub fn thinned(&self, most: usize, length: f64) -> Option<Self> {
         let all: usize = self.segments.iter().map(Range::len).sum();
         if all <= most + most / 4 {
             return None;
@@ -196,7 +200,7 @@ impl Predictor {
             let interval =
                 (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
             // A segment that is shorter is a piece.
-            ((PIECE / interval) as usize).clamp(50, most / 4).min(segment.len())
+            ((length / interval) as usize).clamp(50, most / 4).min(segment.len())
         });
         let mut end = 0;
         let segments = parts.iter().map(|part| {

@@ -226,8 +226,8 @@ fn a_model_that_runs_away_errs_as_much_as_can_be() {
 fn a_part_of_a_recording_has_as_many_samples_as_asked_and_all_of_its_places() {
     let data = recording(&table(), Hold::ZeroOrder, QUIET);
     let whole = predictor(&data);
-    assert!(whole.thinned(SAMPLES as usize).is_none());
-    let part = whole.thinned(3000).unwrap();
+    assert!(whole.thinned(SAMPLES as usize, 1.0).is_none());
+    let part = whole.thinned(3000, 1.0).unwrap();
     let samples: usize = part.segments.iter().map(Range::len).sum();
     assert!((2000..=4000).contains(&samples), "{samples}");
     assert!(part.counted.iter().all(|k| part.segments[part.piece(*k)].contains(k)));
@@ -245,7 +245,7 @@ fn of_segments_that_are_shorter_than_a_piece_whole_ones_are_taken() {
     let segment = (0..i64::from(SAMPLES)).map(|k| k / 400).collect();
     let (time, channels) = (data.time().to_vec(), data.channels().to_vec());
     let data = Recording::with_segments("short", time, channels, segment).unwrap();
-    let part = predictor(&data).thinned(3000).unwrap();
+    let part = predictor(&data).thinned(3000, 1.0).unwrap();
     let samples: usize = part.segments.iter().map(Range::len).sum();
     assert!((2000..=4000).contains(&samples), "{samples}");
 }

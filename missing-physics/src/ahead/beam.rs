@@ -240,7 +240,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                     let (size, cost) = (costs.len() - 1, negative(*cost));
                     let because = Some(Reason::Refused { refusal });
                     self.note(size, without, &last, cost, Outcome::NotIdentifiable, because);
-                    best = without.clone();
+                    best = self.what_is_left(&climb, without);
                     continue;
                 }
             }
@@ -470,7 +470,7 @@ fn gain(remains: &Remains) -> f64 {
 }
 
 fn negative(difference: Difference) -> Difference {
-    Difference { nats: -difference.nats, ..difference }
+    Difference { nats: -difference.nats, ranks: -difference.ranks, ..difference }
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ use super::node::Node;
 use super::predictive::{self, Bowl, Cost};
 use super::{Ahead, scales, statistics};
 use crate::family::{Fitted, ModelFamily, Role, Term, TermParameter};
+use crate::statistics::signed_ranks::signed_ranks;
 
 /// Folds of interleaved pieces.
 const FOLDS: usize = 5;
@@ -27,6 +28,8 @@ pub struct Difference {
     pub nats: f64,
     /// Standard error of it, from blocks of time.
     pub error: f64,
+    /// By how many standard deviations the ranks of those blocks speak for the second model.
+    pub ranks: f64,
 }
 
 impl Difference {
@@ -35,8 +38,19 @@ impl Difference {
         if self.error <= 0.0 {
             return if self.nats > 0.0 { 0.0 } else { 1.0 };
         }
-        0.5 * statrs::function::erf::erfc(self.nats / self.error / std::f64::consts::SQRT_2)
+        above(self.nats / self.error)
     }
+
+    /// Chance of a gain that recurs so often where there is none: from its standard error or from the ranks of its blocks,
+    /// whichever is less, times two. One block that dwarfs the others takes the standard error with it; ranks need many.
+    pub fn recurs_by_chance(&self) -> f64 {
+        (2.0 * self.p_value().min(above(self.ranks))).min(1.0)
+    }
+}
+
+/// Chance of a normal number above so many standard deviations.
+fn above(deviations: f64) -> f64 {
+    0.5 * statrs::function::erf::erfc(deviations / std::f64::consts::SQRT_2)
 }
 
 /// Held-out losses of models, and what all comparisons share.
@@ -80,14 +94,17 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
             // Errors are worth as much as they are there, what is open is what it is.
             cost.open + cost.moved * node.correlation() / better(a, b).correlation()
         };
-        let in_sample = self.unfitted(a, b);
         // A part stands for a recording that gains so many times as much, and costs no more.
-        let cost = self.ahead.share() * (cost(a) - cost(b));
-        Difference { nats: in_sample.nats + cost, ..in_sample }
+        self.beyond(a, b, self.ahead.share() * (cost(a) - cost(b)))
     }
 
     /// The same of two models that were not fitted to this recording: nothing is held out.
     pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
+        self.beyond(a, b, 0.0)
+    }
+
+    /// How much better `b` predicts than `a` where the parameters of `a` cost so much more, which every block bears alike.
+    fn beyond(&self, a: &Node, b: &Node, cost: f64) -> Difference {
         let better = better(a, b);
         let (scale, correlation) = (better.deviation, better.correlation());
         let loss = |node: &Node, k: usize| statistics::loss(node.innovations[k] / scale);
@@ -95,10 +112,12 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         for (k, block) in self.block.iter().enumerate() {
             sums[*block] += (loss(a, k) - loss(b, k)) / correlation;
         }
-        let nats: f64 = sums.iter().sum();
+        let nats = sums.iter().sum::<f64>() + cost;
+        let each = cost / self.blocks.max(1) as f64;
+        sums.iter_mut().for_each(|sum| *sum += each);
         let mean = nats / self.blocks.max(1) as f64;
         let square: f64 = sums.iter().map(|sum| (sum - mean).powi(2)).sum();
-        Difference { nats, error: square.sqrt() }
+        Difference { nats, error: square.sqrt(), ranks: signed_ranks(sums.into_iter()) }
     }
 
     /// What its fitted parameters cost.
@@ -178,7 +197,7 @@ mod tests {
 
     #[test]
     fn the_chance_of_a_gain_is_that_of_a_normal_error() {
-        let p = |nats, error| Difference { nats, error }.p_value();
+        let p = |nats, error| Difference { nats, error, ranks: 0.0 }.p_value();
         for (nats, expected) in [
             (0.0, 0.5),
             (3.0 * 1.959_963_984_540_054, 0.025),
@@ -193,14 +212,28 @@ mod tests {
     }
 
     #[test]
+    fn a_gain_recurs_by_its_standard_error_or_by_its_ranks() {
+        let p = |nats, error, ranks| Difference { nats, error, ranks }.recurs_by_chance();
+        let normal = 1.959_963_984_540_054;
+        for (found, expected) in [
+            (p(normal, 1.0, -9.0), 0.05),
+            (p(-9.0, 1.0, normal), 0.05),
+            (p(normal, 1.0, 1.0), 0.05),
+            (p(-1.0, 1.0, -1.0), 1.0),
+        ] {
+            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        }
+    }
+
+    #[test]
     fn a_comparison_the_other_way_round_says_the_opposite() {
         let plant = Plant::new(1, &[(WAVE, &[WEAK])]);
         let (a, b) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
         let comparison = Comparison::new(&plant, &plant);
         let (there, back) = (comparison.compare(&a, &b), comparison.compare(&b, &a));
         assert!(there.nats > 0.0);
-        assert_eq!(back, Difference { nats: -there.nats, ..there });
-        assert_eq!(comparison.compare(&b, &b), Difference { nats: 0.0, error: 0.0 });
+        assert_eq!(back, Difference { nats: -there.nats, ranks: -there.ranks, ..there });
+        assert_eq!(comparison.compare(&b, &b), Difference { nats: 0.0, error: 0.0, ranks: 0.0 });
     }
 
     #[test]

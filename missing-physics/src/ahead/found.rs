@@ -667,7 +667,7 @@ mod tests {
     fn what_time_does_not_allow_to_be_asked_of_all_of_the_recording_is_told_as_such() {
         let plant = Plant::new(1, &[(WAVE, &[0.05])]);
         let node = |terms| fit::evaluated(&plant, Plant::model(terms), 0);
-        let gain = Difference { nats: 30.0, error: 3.0 };
+        let gain = Difference { nats: 30.0, error: 3.0, ranks: 2.0 };
         let on_part = || Found {
             added: vec![WAVE],
             rungs: vec![node(&[(WAVE, &[0.05])])],
@@ -684,7 +684,7 @@ mod tests {
         }
         let told = on_part().unconfirmed(0.25);
         assert_eq!((told.added.as_slice(), told.stopped), (&[WAVE][..], true));
-        assert_eq!(told.gains, [Difference { nats: 120.0, error: 12.0 }]);
+        assert_eq!(told.gains, [Difference { nats: 120.0, error: 12.0, ranks: 2.0 }]);
         assert_eq!(told.costs, told.gains);
         assert_eq!(told.remarks, [Remark::Unconfirmed { share: 0.25 }]);
     }

@@ -8,6 +8,7 @@ pub mod metrics;
 pub mod periodogram;
 pub mod placebo;
 pub mod residual_tests;
+pub(crate) mod signed_ranks;
 pub mod split;
 mod weights;
 

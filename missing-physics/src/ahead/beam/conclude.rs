@@ -88,16 +88,29 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
     }
 
+    /// What is left of a set that an effect has gone from: nothing where a single one is, and gains too little. No size was
+    /// asked of that.
+    pub(super) fn what_is_left(&mut self, climb: &Climb, left: &Node) -> Node {
+        let gain = self.comparison.compare(&climb.base, left);
+        let too_little = gain.nats < self.thresholds.better;
+        if too_little && Self::added(&climb.base, left).len() == 1 {
+            let because = Some(Reason::AsGoodWithout);
+            self.note(0, &climb.base, left, negative(gain), Outcome::Dropped, because);
+            return climb.base.clone();
+        }
+        left.clone()
+    }
+
     /// Why an effect of a set of several is not needed, if so: what the set without it loses, and that one.
     pub(super) fn why_goes(&self, set: &Node, cost: Difference, without: &Node) -> Option<Reason> {
         // Errors of an incomplete model are its own, and what lowers them counts only as far as it does so again and again
-        // (Q. H. Vuong, 1989).
+        // (Q. H. Vuong, 1989, and by ranks).
         let misfit = self.ahead.has_shares() && self.budget(set) > self.thresholds.complete;
         if cost.nats < self.thresholds.better {
             Some(Reason::AsGoodWithout)
         } else if !set.foretells_more(without) {
             Some(Reason::ErrorNoLower)
-        } else if misfit && cost.p_value() > self.thresholds.recurs() {
+        } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
         } else {
             None

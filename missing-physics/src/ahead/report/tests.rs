@@ -16,7 +16,7 @@ fn node(plant: &Plant, terms: &[(usize, &[f64])]) -> Node {
 }
 
 fn by(nats: f64) -> Difference {
-    Difference { nats, error: 1.0 }
+    Difference { nats, error: 1.0, ranks: 0.0 }
 }
 
 /// A search that found a wave, then a beat.

@@ -77,16 +77,17 @@ fn beside_an_incomplete_model_an_effect_must_gain_again_and_again() {
     let plant = Plant::new(3, &[(WAVE, &[0.05])]);
     let search = search(&plant, narrow());
     let (mut set, mut without) = (node(&plant, &[]), node(&plant, &[]));
-    let mut why = |times: f64, fewer: f64, nats: f64, error: f64| {
+    let mut why = |times: f64, fewer: f64, nats: f64, error: f64, ranks: f64| {
         (set.scale, without.scale) = (times * plant.budget(), fewer * plant.budget());
-        search.why_goes(&set, Difference { nats, error }, &without)
+        search.why_goes(&set, Difference { nats, error, ranks }, &without)
     };
-    assert_eq!(why(1.5, 2.0, 1000.0, 400.0), None);
-    assert_eq!(why(1.5, 2.0, 1000.0, 450.0), Some(Reason::NotRecurring));
+    assert_eq!(why(1.5, 2.0, 1000.0, 380.0, 0.0), None);
+    assert_eq!(why(1.5, 2.0, 1000.0, 400.0, 2.5), Some(Reason::NotRecurring));
+    assert_eq!(why(1.5, 2.0, 1000.0, 900.0, 2.6), None);
     // Errors of a complete model are what the likelihood supposes.
-    assert_eq!(why(1.2, 2.0, 1000.0, 450.0), None);
-    assert_eq!(why(1.1, 1.0, 1000.0, 300.0), Some(Reason::ErrorNoLower));
-    assert_eq!(why(1.1, 2.0, 0.5 * narrow().better, 0.0), Some(Reason::AsGoodWithout));
+    assert_eq!(why(1.2, 2.0, 1000.0, 450.0, 0.0), None);
+    assert_eq!(why(1.1, 1.0, 1000.0, 300.0, 9.0), Some(Reason::ErrorNoLower));
+    assert_eq!(why(1.1, 2.0, 0.5 * narrow().better, 0.0, 9.0), Some(Reason::AsGoodWithout));
 }
 
 #[test]
@@ -138,6 +139,19 @@ fn a_single_effect_is_not_dropped_for_what_it_gains() {
     let mut search = search(&plant, narrow());
     let (kept, costs) = search.prune(&climb(&plant, Vec::new()), node(&plant, &[(PUSH, &[1e-4])]));
     assert_eq!((kept.effects(&plant), costs.len()), (vec![PUSH], 1));
+}
+
+#[test]
+fn what_is_left_of_a_refused_set_must_gain_as_much_as_any() {
+    let plant = Plant::new(3, &[(WAVE, &[0.05])]);
+    let mut search = search(&plant, narrow());
+    let climb = climb(&plant, Vec::new());
+    let left =
+        [&[(PUSH, &[1e-4][..])][..], &[(WAVE, &[0.05])], &[(PUSH, &[1e-4]), (TWIN, &[1e-4])]]
+            .map(|terms| search.what_is_left(&climb, &node(&plant, terms)).effects(&plant));
+    assert_eq!(left, [vec![], vec![WAVE], vec![PUSH, TWIN]]);
+    let dropped: Vec<_> = search.decisions.iter().map(|d| (d.rung, d.outcome)).collect();
+    assert_eq!(dropped, [(0, Outcome::Dropped)]);
 }
 
 #[test]
