@@ -53,11 +53,18 @@ pub fn remains(what: &Remains) -> String {
             100.0 * place.share,
             pattern(place)
         ),
-        Remains::Astray { astray } => format!(
-            "{}: one sample ahead this model errs least where the measured force hardly matters, and says little of what it \
-             does. Where the value is known, fix it (--fix).",
-            capital(&self::astray(astray))
-        ),
+        Remains::Astray { astray } => {
+            let where_least = if astray.value > 3.0 * astray.balance {
+                "the measured force hardly matters"
+            } else {
+                "hardly anything has to be accelerated"
+            };
+            format!(
+                "{}: one sample ahead this model errs least where {where_least}, and says little of what the force does. Where \
+                 the value is known, fix it (--fix).",
+                capital(&self::astray(astray))
+            )
+        }
         Remains::TooCoarse => {
             "From one sample to the next the model's own output changes as much as what it leaves: this is too coarse to \
              tell noise from something that is missing, unless the noise is stated."
@@ -73,12 +80,14 @@ pub fn remains(what: &Remains) -> String {
 }
 
 fn astray(Astray { parameter, value, balance, unit }: &Astray) -> String {
-    format!(
-        "{parameter} is {}, {:.0} times the {} that the balance of forces gives",
-        quantity(*value, unit),
-        value / balance,
-        quantity(*balance, unit)
-    )
+    let (value, balance, times) =
+        (quantity(*value, unit), quantity(*balance, unit), value / balance);
+    let far = match times {
+        3.0.. => format!("{times:.0} times the"),
+        ..0.34 => "less than a third of the".to_owned(),
+        _ => return format!("{parameter} is {value}, the least that is looked for"),
+    };
+    format!("{parameter} is {value}, {far} {balance} that the balance of forces gives")
 }
 
 fn fault(fault: &Fault) -> String {
@@ -205,6 +214,20 @@ mod tests {
             told.starts_with("Mass is 1255 kg, 24 times") && told.ends_with("fix it (--fix)."),
             "{told}"
         );
+    }
+
+    #[test]
+    fn a_mass_that_is_astray_may_be_too_small_as_well() {
+        let (parameter, unit) = ("mass".to_owned(), "kg".to_owned());
+        let astray = Astray { parameter, value: 2e-3, balance: 52.0, unit };
+        let told = remains(&Remains::Astray { astray });
+        let begin = "Mass is 0.00200 kg, less than a third of the 52.0 kg that the balance of forces gives: ";
+        assert!(told.starts_with(begin) && told.contains("has to be accelerated"), "{told}");
+        let (parameter, unit) = ("mass".to_owned(), "kg".to_owned());
+        let astray = Astray { parameter, value: 2e-3, balance: 2e-3, unit };
+        let told = remains(&Remains::Astray { astray });
+        assert!(told.starts_with("Mass is 0.00200 kg, the least that is looked for: "), "{told}");
+        assert!(told.contains("has to be accelerated"), "{told}");
     }
 
     #[test]

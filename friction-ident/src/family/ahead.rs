@@ -281,6 +281,7 @@ impl Ahead for View<'_> {
         let mut related = self.family.related_second_bodies(model);
         related.extend(self.family.other_forms_of_companion(model));
         related.extend(self.family.other_lateness(model));
+        related.extend(self.family.what_draws_back(model));
         related
     }
 

@@ -14,6 +14,8 @@ const SECOND_MASS: f64 = 0.5;
 const CONTACT: f64 = 150.0;
 /// Shares of the friction that a second body takes over in other valleys.
 const SHARES: [f64; 3] = [0.35, 0.55, 0.75];
+/// Share of a friction level that a spring begins with in the place of a contact that hardly slides.
+const LITTLE: f64 = 0.1;
 
 impl FrictionFamily {
     /// What a term says of itself as a second body.
@@ -244,6 +246,49 @@ impl FrictionFamily {
         others().unwrap_or_default()
     }
 
+    /// The same with what else draws back as the last term does: a pendulum in the place of a spring, at rest where the spring
+    /// is and as stiff; a spring and a pendulum in that of a contact that hardly slides, the friction then much smaller.
+    pub(super) fn what_draws_back(&self, model: &Fitted) -> Vec<Fitted> {
+        let term = |name: &str| self.terms.iter().position(|term| term.name == name);
+        let others = || {
+            let &last = model.terms.last()?;
+            let (spring, pendulum) = (term("spring")?, term("gravity-pendulum"));
+            let mut without = model.without(self, last);
+            let mut others = Vec::new();
+            let stiffness = if self.main_of(last) == spring {
+                self.value(model, &self.terms[last].name, "k")?
+            } else {
+                let level = self.value(model, "coulomb", "F_C")?;
+                let values = self.values_in_full(model, model.terms.len() - 1)?;
+                let give = self.effect(last)?.gives(&values, level)?;
+                if give < self.longest_give() {
+                    return None;
+                }
+                self.change(&mut without, "coulomb", "F_C", |level| LITTLE * level);
+                others.push(without.with(spring, &[level / give]));
+                level / give
+            };
+            let force = self.value(model, "offset", "F_0").unwrap_or(0.0);
+            self.change(&mut without, "offset", "F_0", |_| 0.0);
+            others.extend(
+                pendulum.map(|pendulum| without.with(pendulum, &[stiffness, -force / stiffness])),
+            );
+            Some(others)
+        };
+        let mut others = others().unwrap_or_default();
+        others.retain(|other| {
+            let without =
+                other.terms.split_last().map(|(last, _)| (*last, other.without(self, *last)));
+            without.is_some_and(|(last, without)| self.joins(&without, last))
+        });
+        others.into_iter().map(|other| other.within(self)).collect()
+    }
+
+    /// How far a contact may give: from one side to the other and as far again fit into the stroke.
+    fn longest_give(&self) -> f64 {
+        0.25 * (self.stroke.1 - self.stroke.0)
+    }
+
     /// The effect that a term is a form of.
     fn main_of(&self, term: usize) -> usize {
         self.form_of(term).unwrap_or(term)
@@ -276,6 +321,9 @@ impl FrictionFamily {
                 if effect.gives(found.values, 0.0).is_some() && found.give <= found.count {
                     return Some((*term, self.rigid(effect, &found)));
                 }
+                if effect.gives(found.values, 0.0).is_some() && found.give >= self.longest_give() {
+                    return Some((*term, self.elastic(effect, &found)));
+                }
                 let Refused { name, value, limit, unit_of, meaning } = effect.refused(&found)?;
                 let unit = effect.about().parameter(unit_of).map_or("", |k| {
                     self.effort.unit(self.axis, effect.about().parameters[k].quantity)
@@ -300,6 +348,18 @@ impl FrictionFamily {
             value: NamedValue { name: "give".into(), value: found.give, unit },
             limit: found.count,
             meaning: "it gives no more than a count of the position before it slides".into(),
+        }
+    }
+
+    /// Why a contact is none that gives so far that it hardly slides: what draws the axis back to one place is no friction.
+    fn elastic(&self, effect: &dyn Effect, found: &AsFound<'_>) -> Refusal {
+        let unit = self.axis.unit(Quantity::Length).to_owned();
+        Refusal::NotThatEffect {
+            effect: effect.about().name.to_owned(),
+            value: NamedValue { name: "give".into(), value: found.give, unit },
+            limit: self.longest_give(),
+            meaning: "it hardly slides within the stroke: a spring or a weight draws the axis back"
+                .into(),
         }
     }
 

@@ -93,6 +93,8 @@ pub struct Predictor {
     time: Vec<f64>,
     position: Vec<f64>,
     force: Vec<f64>,
+    /// By how much the slope of a force that was sampled changes at each sample, N/s; 0 where it is held or a piece ends.
+    bends: Vec<f64>,
     hold: Hold,
     segments: Vec<Range<usize>>,
     noise: Noise,
@@ -130,6 +132,7 @@ impl Predictor {
         let mut predictor = Self {
             origin: (0..recording.len()).collect(),
             time: recording.time().to_vec(),
+            bends: bends(recording, &force),
             hold: recording.hold(),
             segments: recording.segments().to_vec(),
             came: Vec::new(),
@@ -214,6 +217,7 @@ impl Predictor {
             time: picked(&self.time, &parts),
             position: picked(&self.position, &parts),
             force: picked(&self.force, &parts),
+            bends: picked(&self.bends, &parts),
             stale: picked(&self.stale, &parts),
             came: picked(&self.came, &parts),
             counted: Vec::new(),
@@ -359,6 +363,20 @@ impl Predictor {
     fn gain(&self, setting: usize) -> &Gain {
         self.gain_of(setting % self.ladder.len())
     }
+}
+
+/// By how much the slope of a sampled `force` changes at each sample.
+fn bends(recording: &Recording, force: &[f64]) -> Vec<f64> {
+    let mut bends = vec![0.0; force.len()];
+    if recording.hold() == Hold::Sampled {
+        let time = recording.time();
+        let slope = |k: usize| (force[k + 1] - force[k]) / (time[k + 1] - time[k]);
+        let inside = |segment: &Range<usize>| segment.start + 1..segment.end.saturating_sub(1);
+        for k in recording.segments().iter().flat_map(inside) {
+            bends[k] = slope(k) - slope(k - 1);
+        }
+    }
+    bends
 }
 
 /// The values of these parts, one after the other.

@@ -31,9 +31,18 @@ const QUIET: Sensors = Sensors { position: 0.0, force: 0.0 };
 
 /// A recording of `model` that is simulated with twenty steps a sample and read in counts.
 fn recording(model: &Model, hold: Hold, sensors: Sensors) -> Recording {
+    commanded(model, hold, sensors, |t| 24.0 * (5.0 * t).sin() + 12.0 * (13.0 * t + 1.0).sin())
+}
+
+/// The same under a command over time.
+fn commanded(
+    model: &Model,
+    hold: Hold,
+    sensors: Sensors,
+    command: impl Fn(f64) -> f64,
+) -> Recording {
     let time: Vec<f64> = (0..SAMPLES).map(|k| f64::from(k) * 1e-3).collect();
-    let command = |t: &f64| 24.0 * (5.0 * t).sin() + 12.0 * (13.0 * t + 1.0).sin();
-    let force: Vec<f64> = time.iter().map(command).collect();
+    let force: Vec<f64> = time.iter().map(|t| command(*t)).collect();
     let input = Input::new(&time, &force, hold).with_max_step(5e-5);
     let out = simulate(model, &input, &Start::at(0.0, 0.0)).unwrap();
     let mut random = Xoshiro256PlusPlus::seed_from_u64(9);
@@ -43,6 +52,11 @@ fn recording(model: &Model, hold: Hold, sensors: Sensors) -> Recording {
     let force = force.iter().map(|f| f + sensors.force * normal()).collect();
     let channels = vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
     Recording::new("simulated", time, channels).unwrap().with_hold(hold)
+}
+
+/// A command with 80 Hz beside a slow motion, N.
+fn fast(t: f64) -> f64 {
+    24.0 * (5.0 * t).sin() + 300.0 * (8.0 * t).sin() * (500.0 * t).sin()
 }
 
 fn predictor(recording: &Recording) -> Predictor {
@@ -89,6 +103,29 @@ fn a_command_that_is_held_and_read_as_sampled_shows() {
     let truth = best(&predictor(&data), &table()).1;
     let wrong = best(&predictor(&data.clone().with_hold(Hold::Sampled)), &table()).1;
     assert!(rms(&wrong) > 1.02 * rms(&truth), "{:.3e} {:.3e}", rms(&wrong), rms(&truth));
+}
+
+#[test]
+fn a_step_a_sample_follows_a_force_that_changes_within_it() {
+    for hold in [Hold::ZeroOrder, Hold::Sampled] {
+        let predictor = predictor(&commanded(&table(), hold, QUIET, fast));
+        let (setting, errors) = best(&predictor, &table());
+        let ratio = rms(&errors) / predictor.budget();
+        assert!(setting == 0 && ratio < 0.9, "{hold:?}: {ratio} at {setting}");
+    }
+}
+
+#[test]
+fn a_delay_of_part_of_a_sample_is_no_actuator() {
+    // A delay turns the phase of a fast command, an actuator that is as late lowers its gain besides.
+    let late = 0.65e-3;
+    let delayed = table().with("input-delay", &[("T_d", late)]).unwrap();
+    let predictor = predictor(&commanded(&delayed, Hold::ZeroOrder, QUIET, fast));
+    let left = |model: &Model| rms(&best(&predictor, model).1);
+    let (zeta, form) = (0.6, "actuator-lag:second-order");
+    let lagged = table().with(form, &[("tau", late / (2.0 * zeta)), ("zeta", zeta)]).unwrap();
+    assert!(left(&delayed) < 0.95 * left(&lagged), "{:.3e} {:.3e}", left(&delayed), left(&lagged));
+    assert!(left(&delayed) < 1.05 * predictor.budget(), "{:.3e}", left(&delayed));
 }
 
 #[test]

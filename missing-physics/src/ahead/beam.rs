@@ -26,7 +26,7 @@ use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::found::{Found, MOST_WITHIN, Ranked};
 use super::node::Node;
-use super::refused::not_told;
+use super::refused::{not_told, refused};
 use super::screen::{Screened, screen};
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Outcome, Reason, Refusal, Remains, Remark};
@@ -311,8 +311,14 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             }
             climb.nodes.truncate(size + 1);
             climb.ranking.truncate(size);
-            climb.nodes[size].insert(0, needed.clone());
-            climb.beam = vec![needed];
+            let mut sets = self.related(&[&needed]);
+            sets.retain(|set| {
+                self.comparison.compare(&climb.base, set).nats > self.thresholds.better
+                    && refused(self.family, self.ahead, &climb.base, set).is_none()
+            });
+            sets.insert(0, needed);
+            climb.nodes[size].splice(0..0, sets.iter().cloned());
+            climb.beam = sets;
             climb.ended = false;
         }
     }

@@ -298,10 +298,14 @@ impl<'a> Run<'a> {
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
             let start = start.fit.model.within(family);
             let begun = base_of(&search, start.clone());
-            let elsewhere = elsewhere(family, &start, &begun.model);
-            let elsewhere = elsewhere.into_iter().map(|start| search.base_holding(start));
-            let elsewhere = elsewhere.map(|node| search.joined(node, &more, base)).collect();
-            (search.joined(begun, &more, base), elsewhere)
+            let elsewhere = elsewhere(family, &start, &begun.model).into_iter();
+            let held: Vec<Node> = elsewhere.map(|start| search.base_holding(start)).collect();
+            // The way from much process noise may have led into another valley than the lowest.
+            let freed = held.iter().map(|node| search.base_near(node.model.clone()));
+            let lower = freed.filter(|node| node.deviation < begun.deviation);
+            let lowest = lower.min_by(|a, b| a.deviation.total_cmp(&b.deviation)).unwrap_or(begun);
+            let held = held.into_iter().map(|node| search.joined(node, &more, base)).collect();
+            (search.joined(lowest, &more, base), held)
         };
         let climb = search.begin(base, elsewhere);
         Pursuit { reading, search, climb }

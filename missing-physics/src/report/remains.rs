@@ -23,8 +23,9 @@ pub enum Fault {
     },
 }
 
-/// A parameter of every model that is far larger than the balance with the same effects makes it: the model predicts best
-/// where the measured input hardly matters, and says little of what the input does.
+/// A parameter of every model that is far larger or smaller than the balance with the same effects makes it: a mass so large
+/// that the measured input hardly matters, or so small that nothing has to be accelerated. Such a model says little of what the
+/// input does.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Astray {
     /// The parameter: `mass`.

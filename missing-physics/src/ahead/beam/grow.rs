@@ -203,20 +203,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             .into_par_iter()
             .map(|node| if node.deviation <= NEAR * best { self.rescanned(&node) } else { node })
             .collect();
-        let known =
-            |model: &Fitted| model.terms.last().is_some_and(|term| self.candidates.contains(term));
-        let related: Vec<(Fitted, usize)> = settled
-            .iter()
-            .filter(|node| node.deviation <= NEAR * best)
-            .flat_map(|node| {
-                let related = self.ahead.relatives(&node.model).into_iter();
-                related.filter(known).map(|model| (model, node.setting)).collect::<Vec<_>>()
-            })
-            .collect();
-        let related: Vec<Node> = related
-            .into_par_iter()
-            .map(|(start, setting)| self.gone_far(&start, setting))
-            .collect();
+        let near = settled.iter().filter(|node| node.deviation <= NEAR * best);
+        let related = self.related(&near.collect::<Vec<_>>());
         settled.extend(related);
         settled.sort_by(|a, b| a.deviation.total_cmp(&b.deviation));
         let beam = self.thresholds.beam;
@@ -224,6 +212,18 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let shaped = shaped
             .map(|(place, node)| if size == 1 || place < beam { self.shaped(&node) } else { node });
         (shaped.collect(), screened)
+    }
+
+    /// Sets that differ from these by one effect and begin from their fits.
+    pub(super) fn related(&self, sets: &[&Node]) -> Vec<Node> {
+        let known =
+            |model: &Fitted| model.terms.last().is_some_and(|term| self.candidates.contains(term));
+        let related = |node: &&Node| -> Vec<(Fitted, usize)> {
+            let related = self.ahead.relatives(&node.model).into_iter();
+            related.filter(known).map(|model| (model, node.setting)).collect()
+        };
+        let starts: Vec<_> = sets.iter().flat_map(related).collect();
+        starts.into_par_iter().map(|(start, setting)| self.gone_far(&start, setting)).collect()
     }
 
     /// Whether another form of the same effects predicts better, one of more parameters by more than a form must gain.
