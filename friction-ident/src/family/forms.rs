@@ -249,38 +249,36 @@ impl FrictionFamily {
     /// The same with what else draws back as the last term does: a pendulum in the place of a spring, at rest where the spring
     /// is and as stiff; a spring and a pendulum in that of a contact that hardly slides, the friction then much smaller.
     pub(super) fn what_draws_back(&self, model: &Fitted) -> Vec<Fitted> {
-        let term = |name: &str| self.terms.iter().position(|term| term.name == name);
         let others = || {
-            let &last = model.terms.last()?;
-            let (spring, pendulum) = (term("spring")?, term("gravity-pendulum"));
-            let mut without = model.without(self, last);
+            let place = model.terms.len().checked_sub(1)?;
+            let last = model.terms[place];
+            let mut base = model.without(self, last);
+            let open = |name: &str| {
+                let term = self.terms.iter().position(|term| term.name == name)?;
+                self.joins(&base, term).then_some(term)
+            };
+            let (spring, pendulum) = (open("spring"), open("gravity-pendulum"));
+            let is_spring = self.terms[self.main_of(last)].name == "spring";
             let mut others = Vec::new();
-            let stiffness = if self.main_of(last) == spring {
+            let stiffness = if is_spring {
                 self.value(model, &self.terms[last].name, "k")?
             } else {
                 let level = self.value(model, "coulomb", "F_C")?;
-                let values = self.values_in_full(model, model.terms.len() - 1)?;
-                let give = self.effect(last)?.gives(&values, level)?;
+                let give = self.effect(last)?.gives(&self.values_in_full(model, place)?, level)?;
                 if give < self.longest_give() {
                     return None;
                 }
-                self.change(&mut without, "coulomb", "F_C", |level| LITTLE * level);
-                others.push(without.with(spring, &[level / give]));
+                self.change(&mut base, "coulomb", "F_C", |level| LITTLE * level);
+                others.extend(spring.map(|spring| base.with(spring, &[level / give])));
                 level / give
             };
             let force = self.value(model, "offset", "F_0").unwrap_or(0.0);
-            self.change(&mut without, "offset", "F_0", |_| 0.0);
-            others.extend(
-                pendulum.map(|pendulum| without.with(pendulum, &[stiffness, -force / stiffness])),
-            );
+            self.change(&mut base, "offset", "F_0", |_| 0.0);
+            let at_rest = -force / stiffness;
+            others.extend(pendulum.map(|pendulum| base.with(pendulum, &[stiffness, at_rest])));
             Some(others)
         };
-        let mut others = others().unwrap_or_default();
-        others.retain(|other| {
-            let without =
-                other.terms.split_last().map(|(last, _)| (*last, other.without(self, *last)));
-            without.is_some_and(|(last, without)| self.joins(&without, last))
-        });
+        let others = others().unwrap_or_default();
         others.into_iter().map(|other| other.within(self)).collect()
     }
 
@@ -428,20 +426,29 @@ mod tests {
 
     /// A mass of 20 kg on a sine with counts of 1 um, 20 N (rms) at 1 ms.
     fn recording() -> Recording {
+        moved("N", "m")
+    }
+
+    /// The same of an axis with these units.
+    fn moved(force_unit: &str, position_unit: &str) -> Recording {
         let time: Vec<f64> = (0..4000).map(|k| f64::from(k) * 1e-3).collect();
         let (w, size) = (2.0 * std::f64::consts::PI, 0.0358);
         let position = time.iter().map(|t| (size * (w * t).sin() / 1e-6).round() * 1e-6);
         let force = time.iter().map(|t| -20.0 * size * w * w * (w * t).sin());
         let channel = |name: &str, unit: &str, values: Vec<f64>| Channel::new(name, unit, values);
         let channels = vec![
-            channel("force", "N", force.collect()),
-            channel("position", "m", position.collect()),
+            channel("force", force_unit, force.collect()),
+            channel("position", position_unit, position.collect()),
         ];
         Recording::new("sine", time.clone(), channels).unwrap()
     }
 
     fn family() -> FrictionFamily {
-        FrictionFamily::new(&recording(), &Options::default()).unwrap()
+        of_axis("N", "m")
+    }
+
+    fn of_axis(force_unit: &str, position_unit: &str) -> FrictionFamily {
+        FrictionFamily::new(&moved(force_unit, position_unit), &Options::default()).unwrap()
     }
 
     /// A model of so many terms, those with `values` in the place of where they begin.
@@ -746,6 +753,46 @@ mod tests {
             assert!(meaning.contains("without the gap"), "{meaning}");
         }
         assert_eq!(refused(None, 1.55e-3), None);
+    }
+
+    #[test]
+    fn a_contact_that_hardly_slides_within_the_stroke_is_what_draws_the_axis_back() {
+        let family = family();
+        let longest = 0.25 * (family.stroke.1 - family.stroke.0);
+        let with = |form: &str, give: f64| {
+            let values = [("F_C", 8.0), ("k_t", 8.0 / give), ("mass", 20.0)];
+            model(&family, &["mass", "coulomb", form], &values)
+        };
+        let base = model(&family, &["mass", "coulomb"], &[("F_C", 8.0), ("mass", 20.0)]);
+        for form in ["presliding", "presliding:static", "presliding:dahl"] {
+            let (slides, holds) = (with(form, 0.9 * longest), with(form, 1.1 * longest));
+            assert_eq!(family.vanishes(&slides, &base), None, "{form}");
+            let told = family.vanishes(&holds, &base);
+            assert!(
+                matches!(&told, Some((_, Refusal::NotThatEffect { meaning, .. })) if meaning.contains("spring")),
+                "{form}: {told:?}"
+            );
+            assert!(family.what_draws_back(&slides).is_empty());
+            let [spring] = &family.what_draws_back(&holds)[..] else { panic!("{form}") };
+            let of = |term: &str, name: &str| family.value(spring, term, name).unwrap();
+            assert!((of("spring", "k") * 1.1 * longest / 8.0 - 1.0).abs() < 1e-9);
+            assert!((of("coulomb", "F_C") - 0.8).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_pendulum_begins_where_a_spring_is_at_rest() {
+        let family = of_axis("Nm", "rad");
+        let values = [("k", 3.0), ("F_0", 1.5), ("k_t", 1e9)];
+        let sprung = model(&family, &["mass", "coulomb", "offset", "spring"], &values);
+        let [pendulum] = &family.what_draws_back(&sprung)[..] else { panic!() };
+        let of = |term: &str, name: &str| family.value(pendulum, term, name).unwrap();
+        assert_eq!((of("gravity-pendulum", "M"), of("gravity-pendulum", "q_0")), (3.0, -0.5));
+        assert_eq!((of("offset", "F_0"), family.value(pendulum, "spring", "k")), (0.0, None));
+        let both = model(&family, &["mass", "coulomb", "gravity-pendulum", "spring"], &values);
+        assert!(family.what_draws_back(&both).is_empty());
+        let contact = model(&family, &["mass", "coulomb", "presliding"], &values);
+        assert!(family.what_draws_back(&contact).is_empty());
     }
 
     #[test]
