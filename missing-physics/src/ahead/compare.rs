@@ -114,7 +114,9 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         }
         let nats = sums.iter().sum::<f64>() + cost;
         let each = cost / self.blocks.max(1) as f64;
-        sums.iter_mut().for_each(|sum| *sum += each);
+        for sum in &mut sums {
+            *sum += each;
+        }
         let mean = nats / self.blocks.max(1) as f64;
         let square: f64 = sums.iter().map(|sum| (sum - mean).powi(2)).sum();
         Difference { nats, error: square.sqrt(), ranks: signed_ranks(sums.into_iter()) }

@@ -53,11 +53,11 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         best
     }
 
-    /// Whether another set predicts better with fewer parameters: a flexible form counts as its effect does, but there is no
-    /// reason to tell it then.
+    /// Whether another set predicts as well with fewer parameters, as far as chance lets tell: a flexible form counts as its
+    /// effect does, but there is no reason to tell it then.
     fn is_bettered(&self, set: &Node, other: &Node) -> bool {
-        other.model.values.len() < set.model.values.len()
-            && self.comparison.compare(set, other).nats > 0.0
+        let fewer = other.model.values.len() < set.model.values.len();
+        fewer && self.comparison.compare(other, set).recurs_by_chance() > self.thresholds.recurs()
     }
 
     /// Takes out what is not needed, and says what each of the rest is worth.
