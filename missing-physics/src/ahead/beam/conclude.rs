@@ -12,8 +12,9 @@ use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The best set, of the smallest size that is needed, from one of `known` effects on.
-    pub(super) fn size(&mut self, climb: &Climb, mut best: Node, known: usize) -> Node {
+    /// The best set, of the smallest size that is needed, from one of `known` effects on: each effect more must be worth what an
+    /// effect must gain. Two that hide each other gain much together and little alone.
+    pub(super) fn size(&mut self, climb: &Climb, mut best: Node, mut known: usize) -> Node {
         let base = &climb.base;
         for (size, sets) in climb.nodes.iter().enumerate().skip(known + 1) {
             let top = &sets[0];
@@ -41,14 +42,14 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             };
             let gain = self.comparison.compare(&best, &set);
             let all = self.comparison.compare(base, &set).nats;
-            let taken = gain.nats > self.thresholds.clear(if size == 1 { 0.0 } else { all });
+            let each = self.thresholds.clear(if size == 1 { 0.0 } else { all });
+            let taken = gain.nats > (size - known) as f64 * each;
             let outcome = if taken { Outcome::Added } else { Outcome::TooLittle };
             let from = best.clone();
             self.note(size, &set, &from, gain, outcome, Some(Reason::BestOfSize));
-            if !taken {
-                break;
+            if taken {
+                (best, known) = (set, size);
             }
-            best = set;
         }
         best
     }
