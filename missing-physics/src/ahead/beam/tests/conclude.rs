@@ -155,6 +155,20 @@ fn what_is_left_of_a_refused_set_must_gain_as_much_as_any() {
 }
 
 #[test]
+fn two_effects_are_taken_together_where_one_gains_too_little_if_each_is_worth_its_gain() {
+    let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
+    let plant = Plant::new(3, &hidden);
+    let one = node(&plant, &[(PUSH, &[1e-4])]);
+    let climb = climb(&plant, vec![vec![one], vec![node(&plant, &hidden)]]);
+    let gain = search(&plant, narrow()).comparison.compare(&climb.base, &climb.nodes[2][0]).nats;
+    for (needed, taken) in [(0.45 * gain, true), (0.55 * gain, false)] {
+        let mut search = search(&plant, Thresholds { better: needed, share: 0.0, ..narrow() });
+        let best = search.size(&climb, climb.base.clone(), 0);
+        assert_eq!(best.effects(&plant).len(), if taken { 2 } else { 0 }, "{needed} of {gain}");
+    }
+}
+
+#[test]
 fn what_chance_gains_as_often_as_it_is_allowed_to_is_not_named() {
     let plant = Plant::new(1, &[(WAVE, &[0.05])]);
     assert_eq!(among(&[WAVE], &plant, narrow(), 1).added, [WAVE]);
