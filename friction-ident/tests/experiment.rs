@@ -64,7 +64,7 @@ fn the_proposed_motion_tells_apart_what_the_recording_cannot() {
     // Slower than where the search for `v_s` ends (0.05 m/s), or nothing would be told of it.
     let hump: &[(&'static str, f64)] = &[("dF", 1.0), ("v_s", 4.5e-2)];
     let cases: [Case; 2] =
-        [("actuator-lag", "input-delay", &[("tau", 1.5e-3)]), ("stribeck", "quadratic-drag", hump)];
+        [("actuator-lag", "input-delay", &[("tau", 1.1e-3)]), ("stribeck", "quadratic-drag", hump)];
     for (truth, rival, values) in cases {
         let plant = table(truth, values);
         let first = record(&plant, &sines(), 1);
