@@ -43,8 +43,13 @@ pub fn elsewhere<F: ModelFamily + ?Sized>(
 }
 
 /// What every model has and is far larger or smaller in this one than the balance with the same effects makes it. Noise
-/// makes what the balance says too small: what is smaller still is so by more than that. So is what is as small as it may be.
-pub fn astray<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Option<Astray> {
+/// makes what the balance says too small: what is smaller still is so by more than that. So is what is as small as it may be. That is asked `either_way`
+/// of what predicts; of residuals the balance is the model itself, and what every model has may be as good as nothing.
+pub fn astray<F: ModelFamily + ?Sized>(
+    family: &F,
+    model: &Fitted,
+    either_way: bool,
+) -> Option<Astray> {
     let near = family.in_part().unwrap_or(family);
     let everywhere = vec![1.0; near.target().len()];
     let balance = fit::refine(near, model.clone().within(near), &everywhere).model;
@@ -52,9 +57,10 @@ pub fn astray<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Option<Ast
     let parameters = model.parameters(family).zip(known).enumerate();
     parameters.filter(|(_, (_, known))| *known).find_map(|(k, ((term, parameter), _))| {
         let (value, balance) = (model.values[k], balance.values[k]);
-        let far = value > FAR * balance || value < balance / FAR;
+        let least = balance / FAR;
         let none = parameter.lower > 0.0 && value <= AT_END * parameter.lower;
-        (far || none).then(|| Astray {
+        let little = either_way && (value < least || none);
+        (value > FAR * balance || little).then(|| Astray {
             parameter: term.key(parameter),
             value,
             balance,
@@ -92,12 +98,13 @@ mod tests {
     #[test]
     fn what_every_model_has_is_astray_where_it_is_far_from_what_the_balance_makes_it() {
         let plant = Plant::new(1, &[(WAVE, &[0.05])]);
-        let told = astray(&plant, &at(4.0, 0.05)).unwrap();
+        let told = astray(&plant, &at(4.0, 0.05), true).unwrap();
         assert_eq!((&*told.parameter, told.value, &*told.unit), ("drive.size", 4.0, "V"));
         assert!((told.balance - 1.0).abs() < 0.01, "{}", told.balance);
-        assert_eq!(astray(&plant, &at(2.0, 0.05)), None);
-        assert_eq!(astray(&plant, &at(0.4, 0.05)), None);
-        assert_eq!(astray(&plant, &at(0.3, 0.05)).unwrap().value, 0.3);
-        assert_eq!(astray(&plant, &at(1.0, 5.0)), None);
+        assert_eq!(astray(&plant, &at(2.0, 0.05), true), None);
+        assert_eq!(astray(&plant, &at(0.4, 0.05), true), None);
+        assert_eq!(astray(&plant, &at(0.3, 0.05), true).unwrap().value, 0.3);
+        assert_eq!(astray(&plant, &at(0.3, 0.05), false), None);
+        assert_eq!(astray(&plant, &at(1.0, 5.0), true), None);
     }
 }

@@ -393,7 +393,8 @@ fn left_by<F: ModelFamily + ?Sized>(
     thresholds: &Thresholds,
 ) -> Vec<Remains> {
     let shows = local::places(ahead, node, thresholds.local, &family.quantity().unit);
-    let astray = astray(family, &node.model).map(|astray| Remains::Astray { astray });
+    let astray =
+        astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray });
     let hidden = ahead.remains(&node.model, thresholds.complete);
     astray.into_iter().chain(hidden).chain(shows).collect()
 }
