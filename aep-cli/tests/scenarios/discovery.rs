@@ -158,19 +158,13 @@ fn every_comparison_is_explained_where_that_is_asked() {
 fn what_every_drive_has_is_named_before_what_varies_it() {
     let desk = Desk::new();
     // Without a friction level a drift of it gains more than the level.
-    let bases = [
-        ("viscous,offset", &["coulomb", "stribeck"][..]),
-        ("offset", &["coulomb", "stribeck", "viscous"]),
-    ];
-    for (base, names) in bases {
+    for (base, names) in
+        [("viscous,offset", "stribeck, coulomb"), ("offset", "viscous, stribeck, coulomb")]
+    {
         let run = desk.aep(&format!("discover --base {base} --time-limit none --json out.json"));
         // A drift without end is the level, and no alternative to it.
-        assert!(run.done().contains("MISSING EFFECTS FOUND: "), "{}", run.out);
-        let told = desk.json("out.json");
-        let mut added: Vec<&str> =
-            told["added"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
-        added.sort_unstable();
-        assert_eq!(added, names, "{}", run.out);
+        let told = format!("MISSING EFFECTS FOUND: {names}\n");
+        assert!(run.done().contains(&told), "{}", run.out);
     }
 }
 

@@ -54,7 +54,7 @@ pub fn remains(what: &Remains) -> String {
             pattern(place)
         ),
         Remains::Astray { astray } => {
-            let where_least = if astray.value > 3.0 * astray.balance {
+            let where_least = if astray.is_too_large() {
                 "the measured force hardly matters"
             } else {
                 "hardly anything has to be accelerated"
@@ -79,15 +79,18 @@ pub fn remains(what: &Remains) -> String {
     }
 }
 
-fn astray(Astray { parameter, value, balance, unit }: &Astray) -> String {
-    let (value, balance, times) =
-        (quantity(*value, unit), quantity(*balance, unit), value / balance);
-    let far = match times {
-        3.0.. => format!("{times:.0} times the"),
-        ..0.34 => "less than a third of the".to_owned(),
-        _ => return format!("{parameter} is {value}, the least that is looked for"),
+fn astray(astray: &Astray) -> String {
+    let Astray { parameter, value, balance, unit } = astray;
+    let value_told = quantity(*value, unit);
+    let far = if astray.is_too_large() {
+        format!("{:.0} times the", value / balance)
+    } else if astray.is_too_small() {
+        "less than a third of the".to_owned()
+    } else {
+        return format!("{parameter} is {value_told}, the least that is looked for");
     };
-    format!("{parameter} is {value}, {far} {balance} that the balance of forces gives")
+    let balance = quantity(*balance, unit);
+    format!("{parameter} is {value_told}, {far} {balance} that the balance of forces gives")
 }
 
 fn fault(fault: &Fault) -> String {

@@ -316,11 +316,10 @@ impl FrictionFamily {
                     count: self.position_deviation() * 12.0f64.sqrt(),
                     give: self.give(model),
                 };
-                if effect.gives(found.values, 0.0).is_some() && found.give <= found.count {
-                    return Some((*term, self.rigid(effect, &found)));
-                }
-                if effect.gives(found.values, 0.0).is_some() && found.give >= self.longest_give() {
-                    return Some((*term, self.elastic(effect, &found)));
+                if effect.gives(found.values, 0.0).is_some()
+                    && let Some(refusal) = self.no_contact(effect, &found)
+                {
+                    return Some((*term, refusal));
                 }
                 let Refused { name, value, limit, unit_of, meaning } = effect.refused(&found)?;
                 let unit = effect.about().parameter(unit_of).map_or("", |k| {
@@ -337,28 +336,26 @@ impl FrictionFamily {
         })
     }
 
-    /// Why a contact is none that gives no more than a count: it is turned around over twice that, within the half counts
-    /// on either side of the readings at both ends.
-    fn rigid(&self, effect: &dyn Effect, found: &AsFound<'_>) -> Refusal {
+    /// Why a contact is none that gives no more than a count, as it is turned around over twice that, within the half counts on
+    /// either side of the readings at both ends; or so far that it hardly slides: what draws the axis back to one place is no
+    /// friction.
+    fn no_contact(&self, effect: &dyn Effect, found: &AsFound<'_>) -> Option<Refusal> {
+        let (limit, meaning) = if found.give <= found.count {
+            (found.count, "it gives no more than a count of the position before it slides")
+        } else if found.give >= self.longest_give() {
+            let meaning =
+                "it hardly slides within the stroke: a spring or a weight draws the axis back";
+            (self.longest_give(), meaning)
+        } else {
+            return None;
+        };
         let unit = self.axis.unit(Quantity::Length).to_owned();
-        Refusal::NotThatEffect {
+        Some(Refusal::NotThatEffect {
             effect: effect.about().name.to_owned(),
             value: NamedValue { name: "give".into(), value: found.give, unit },
-            limit: found.count,
-            meaning: "it gives no more than a count of the position before it slides".into(),
-        }
-    }
-
-    /// Why a contact is none that gives so far that it hardly slides: what draws the axis back to one place is no friction.
-    fn elastic(&self, effect: &dyn Effect, found: &AsFound<'_>) -> Refusal {
-        let unit = self.axis.unit(Quantity::Length).to_owned();
-        Refusal::NotThatEffect {
-            effect: effect.about().name.to_owned(),
-            value: NamedValue { name: "give".into(), value: found.give, unit },
-            limit: self.longest_give(),
-            meaning: "it hardly slides within the stroke: a spring or a weight draws the axis back"
-                .into(),
-        }
+            limit,
+            meaning: meaning.into(),
+        })
     }
 
     /// How far the contact of a model gives before it slides; 0 without one.

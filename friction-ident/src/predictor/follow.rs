@@ -145,8 +145,8 @@ impl Predictor {
             }
             for part in 0..steps {
                 for (s, strip) in strips.iter().enumerate() {
-                    let mean =
-                        input.mean(at(strip), part, steps) - self.rounding(at(strip), part, steps);
+                    let n = at(strip);
+                    let mean = input.mean(n, part, steps) - self.rounding(n, part, steps);
                     command[lanes(s)].fill(mean);
                 }
                 plants.step(&length, &command);

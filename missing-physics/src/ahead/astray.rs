@@ -10,10 +10,6 @@ use crate::family::{Fitted, ModelFamily};
 use crate::fit;
 use crate::report::Astray;
 
-/// Factor by which what every model has may be away from what least squares of the balance make of it.
-const FAR: f64 = 3.0;
-/// What a fit left within this factor of the least is the least.
-const AT_END: f64 = 1.001;
 /// Shares of that from which effects are fitted, too: what is missing makes it too large there as well.
 const SHARES: [f64; 3] = [1.0, 1.0 / 3.0, 1.0 / 9.0];
 
@@ -27,7 +23,7 @@ pub fn elsewhere<F: ModelFamily + ?Sized>(
     let known: Vec<bool> = known.collect();
     let far = |k: usize| {
         let by = base.values[k] / began.values[k];
-        known[k] && !(1.0 / FAR..=FAR).contains(&by)
+        known[k] && !(1.0 / Astray::FAR..=Astray::FAR).contains(&by)
     };
     if !(0..known.len()).any(far) {
         return Vec::new();
@@ -42,9 +38,10 @@ pub fn elsewhere<F: ModelFamily + ?Sized>(
     SHARES.map(at).to_vec()
 }
 
-/// What every model has and is far larger or smaller in this one than the balance with the same effects makes it. Noise
-/// makes what the balance says too small: what is smaller still is so by more than that. So is what is as small as it may be. That is asked `either_way`
-/// of what predicts; of residuals the balance is the model itself, and what every model has may be as good as nothing.
+/// What every model has and is far larger in this one than the balance with the same effects makes it, or, asked `either_way`,
+/// far smaller or as small as it may be. Noise makes what the balance says too small: what is smaller still is so by more than
+/// that. It is asked of what predicts; of residuals the balance is the model itself, and what every model has may be as good as
+/// nothing.
 pub fn astray<F: ModelFamily + ?Sized>(
     family: &F,
     model: &Fitted,
@@ -53,19 +50,21 @@ pub fn astray<F: ModelFamily + ?Sized>(
     let near = family.in_part().unwrap_or(family);
     let everywhere = vec![1.0; near.target().len()];
     let balance = fit::refine(near, model.clone().within(near), &everywhere).model;
-    let known = scales::of(family, model).into_iter().map(|moved| moved.is_known());
-    let parameters = model.parameters(family).zip(known).enumerate();
-    parameters.filter(|(_, (_, known))| *known).find_map(|(k, ((term, parameter), _))| {
-        let (value, balance) = (model.values[k], balance.values[k]);
-        let least = balance / FAR;
-        let none = parameter.lower > 0.0 && value <= AT_END * parameter.lower;
-        let little = either_way && (value < least || none);
-        (value > FAR * balance || little).then(|| Astray {
+    let moved = scales::of(family, model);
+    let parameters = model.parameters(family).zip(&moved).enumerate();
+    let mut known = parameters.filter(|(_, (_, moved))| moved.is_known());
+    known.find_map(|(k, ((term, parameter), moved))| {
+        let told = Astray {
             parameter: term.key(parameter),
-            value,
-            balance,
+            value: model.values[k],
+            balance: balance.values[k],
             unit: parameter.unit.clone(),
-        })
+        };
+        let least = moved.is_at_far_limit() && told.value < parameter.start;
+        // What may be negative is no amount that could be too little.
+        let amount = parameter.lower >= 0.0;
+        let little = either_way && amount && (told.is_too_small() || least);
+        (told.is_too_large() || little).then_some(told)
     })
 }
 

@@ -26,7 +26,7 @@ use super::compare::{Comparison, Difference};
 use super::fit::{self, Fitter};
 use super::found::{Found, MOST_WITHIN, Ranked};
 use super::node::Node;
-use super::refused::{not_told, refused};
+use super::refused::not_told;
 use super::screen::{Screened, screen};
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Outcome, Reason, Refusal, Remains, Remark};
@@ -165,8 +165,17 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
 
     /// The base model at its best, from a start that is near.
     pub fn base_near(&self, start: Fitted) -> Node {
+        self.near_by(Fitter::new(self.family, self.ahead), start)
+    }
+
+    /// The same as far as time allows.
+    pub fn base_near_in_time(&self, start: Fitted) -> Node {
+        self.near_by(self.fitter(), start)
+    }
+
+    fn near_by(&self, fitter: Fitter<'_, F>, start: Fitted) -> Node {
         let setting = fit::best_setting(self.ahead, &start);
-        Fitter::new(self.family, self.ahead).refit(start, setting, STEPS.0)
+        fitter.refit(start, setting, STEPS.0)
     }
 
     /// The base model at its best with what every model has as it is.
@@ -313,8 +322,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             climb.ranking.truncate(size);
             let mut sets = self.related(&[&needed]);
             sets.retain(|set| {
-                self.comparison.compare(&climb.base, set).nats > self.thresholds.better
-                    && refused(self.family, self.ahead, &climb.base, set).is_none()
+                let (gain, refusal) = self.asked(&climb.base, &climb.base, set, size);
+                gain.nats > self.thresholds.better && refusal.is_none()
             });
             sets.insert(0, needed);
             climb.nodes[size].splice(0..0, sets.iter().cloned());

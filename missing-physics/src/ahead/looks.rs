@@ -301,7 +301,7 @@ impl<'a> Run<'a> {
             let elsewhere = elsewhere(family, &start, &begun.model).into_iter();
             let held: Vec<Node> = elsewhere.map(|start| search.base_holding(start)).collect();
             // The way from much process noise may have led into another valley than the lowest.
-            let freed = held.iter().map(|node| search.base_near(node.model.clone()));
+            let freed = held.iter().map(|node| search.base_near_in_time(node.model.clone()));
             let lower = freed.filter(|node| node.deviation < begun.deviation);
             let lowest = lower.min_by(|a, b| a.deviation.total_cmp(&b.deviation)).unwrap_or(begun);
             let held = held.into_iter().map(|node| search.joined(node, &more, base)).collect();

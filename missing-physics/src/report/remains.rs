@@ -38,6 +38,21 @@ pub struct Astray {
     pub unit: String,
 }
 
+impl Astray {
+    /// Factor by which it may be away from the balance.
+    pub const FAR: f64 = 3.0;
+
+    /// Whether it is far larger.
+    pub fn is_too_large(&self) -> bool {
+        self.value > Self::FAR * self.balance
+    }
+
+    /// Whether it is far smaller.
+    pub fn is_too_small(&self) -> bool {
+        self.value < self.balance / Self::FAR
+    }
+}
+
 /// Something that a model leaves: with it no model is complete, however small its errors are on the whole.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]

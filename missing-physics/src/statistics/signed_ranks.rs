@@ -45,9 +45,6 @@ mod tests {
     fn what_holds_nearly_everywhere_is_seen_beside_one_value_that_dwarfs_all() {
         let values = |k: u32| if k == 7 { 1000.0 } else { 1.0 + f64::from(k % 5) };
         assert!(signed_ranks((0..20).map(values)) > 3.9);
-        assert!(
-            signed_ranks((0..20).map(|k| if k % 2 == 0 { values(k) } else { 900.0 - 1000.0 }))
-                < 0.0
-        );
+        assert!(signed_ranks((0..20).map(|k| if k % 2 == 0 { values(k) } else { -100.0 })) < 0.0);
     }
 }

@@ -92,14 +92,16 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// What is left of a set that an effect has gone from: nothing where a single one is, and gains too little. No size was
     /// asked of that.
     pub(super) fn what_is_left(&mut self, climb: &Climb, left: &Node) -> Node {
-        let gain = self.comparison.compare(&climb.base, left);
-        let too_little = gain.nats < self.thresholds.better;
-        if too_little && Self::added(&climb.base, left).len() == 1 {
-            let because = Some(Reason::AsGoodWithout);
-            self.note(0, &climb.base, left, negative(gain), Outcome::Dropped, because);
-            return climb.base.clone();
+        if Self::added(&climb.base, left).len() != 1 {
+            return left.clone();
         }
-        left.clone()
+        let gain = self.comparison.compare(&climb.base, left);
+        if gain.nats >= self.thresholds.better {
+            return left.clone();
+        }
+        let because = Some(Reason::AsGoodWithout);
+        self.note(0, &climb.base, left, negative(gain), Outcome::Dropped, because);
+        climb.base.clone()
     }
 
     /// Why an effect of a set of several is not needed, if so: what the set without it loses, and that one.

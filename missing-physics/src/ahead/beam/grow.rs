@@ -65,11 +65,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                 climb.ranking.push(self.ranked(from, &children, screened));
             }
             for child in children {
-                let gain = self.comparison.compare(from, &child);
-                if let Some((_, refusal)) = refused(self.family, self.ahead, &climb.base, &child) {
-                    let because = Some(Reason::Refused { refusal: refusal.clone() });
-                    self.note(size, &child, from, gain, Outcome::NotIdentifiable, because);
-                    if gain.nats > self.thresholds.better {
+                let (gain, refusal) = self.asked(&climb.base, from, &child, size);
+                let gains = gain.nats > self.thresholds.better;
+                if let Some(refusal) = refusal {
+                    if gains {
                         if size == 1 {
                             self.tell_refused(&climb.base, &child, &refusal);
                         }
@@ -77,9 +76,6 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
                     }
                     continue;
                 }
-                let gains = gain.nats > self.thresholds.better;
-                let outcome = if gains { Outcome::AsGood } else { Outcome::TooLittle };
-                self.note(size, &child, from, gain, outcome, None);
                 let effects = self.names(&child);
                 let nats = self.in_full(gain.nats);
                 (self.tell)(&Event::Compared { rung: size, effects: &effects, nats });
@@ -114,6 +110,27 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
         climb.beam = ranked.iter().take(width).cloned().collect();
         climb.nodes.push(ranked);
+    }
+
+    /// What a set of `size` effects that was fitted gains, and why it is refused, if so: noted as asked against another one.
+    pub(super) fn asked(
+        &mut self,
+        base: &Node,
+        from: &Node,
+        child: &Node,
+        size: usize,
+    ) -> (Difference, Option<Refusal>) {
+        let gain = self.comparison.compare(from, child);
+        let refusal = refused(self.family, self.ahead, base, child).map(|(_, refusal)| refusal);
+        let gains = gain.nats > self.thresholds.better;
+        let because = refusal.clone().map(|refusal| Reason::Refused { refusal });
+        let outcome = match because {
+            Some(_) => Outcome::NotIdentifiable,
+            None if gains => Outcome::AsGood,
+            None => Outcome::TooLittle,
+        };
+        self.note(size, child, from, gain, outcome, because);
+        (gain, refusal)
     }
 
     /// Tells that an effect is none: once, beside whichever base model.
