@@ -206,17 +206,18 @@ fn the_published_axis_gives_the_published_error_and_the_known_asymmetry() {
     let Some(data) = shared("emps/DATA_EMPS.mat") else { return };
     let desk = Desk::new();
     let run = desk.aep(&format!(
-        "discover {} --hold sampled --time-limit none --json out.json --most 1",
+        "discover {} --hold sampled --time-limit none --json out.json",
         data.display()
     ));
     assert!(run.done().contains("recognised as EMPS"));
     let json = desk.json("out.json");
-    assert_eq!(json["added"][0], "asymmetry");
-    let error = |rung: usize| {
-        json["ladder"][rung]["error"]["force_relative"]["validation"].as_f64().unwrap()
-    };
-    assert!((error(0) - 0.0408).abs() < 0.0015, "{}", error(0));
-    assert!(error(1) < 0.0326, "{}", error(1));
+    assert!(json["added"].as_array().unwrap().contains(&"asymmetry".into()), "{}", json["added"]);
+    let error =
+        |rung: &serde_json::Value| rung["error"]["force_relative"]["validation"].as_f64().unwrap();
+    let ladder = json["ladder"].as_array().unwrap();
+    let (base, last) = (error(&ladder[0]), error(ladder.last().unwrap()));
+    assert!((base - 0.0408).abs() < 0.0015, "{base}");
+    assert!(last < 0.026, "{last}");
 }
 
 #[test]
