@@ -31,6 +31,10 @@ pub fn remark(remark: &Remark) -> String {
             "Time ran out: what is said was found on parts that are {} of what was looked at, and was not asked of all of it.",
             percent(*share)
         ),
+        Remark::SensorsBetter { times } => format!(
+            "The model errs {times:.2} times what the sensors make: their noise was taken as too large, and something \
+             small may hide in it. Names rest on likelihoods, not on this."
+        ),
         Remark::ToldInBrief => {
             "Time ran out when the search was done: maps and tests of the residual were left out."
                 .to_owned()

@@ -120,3 +120,31 @@ fn likelihood(family: &FrictionFamily) -> Option<f64> {
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::family::testing::{family, model};
+
+    #[test]
+    fn a_lag_within_half_a_sample_is_how_an_unstated_force_acts_between_samples() {
+        let mut family = family();
+        let base = model(&family, &["mass", "coulomb"], &[]);
+        let mut refused = |hold: Option<Hold>, name: &str, values: &[(&str, f64)]| {
+            family.hold = hold.map(|hold| HoldChoice { hold, nats: 1.0, by_search: true });
+            let lagging = model(&family, &["mass", "coulomb", name], values);
+            family.within_a_sample(&lagging, &base).is_some()
+        };
+        // A sample takes 1 ms.
+        for (late, told) in [(0.2e-3, false), (0.5e-3, false), (0.6e-3, true), (3e-3, true)] {
+            let delay = |hold| refused(hold, "input-delay", &[("T_d", late)]);
+            let [sampled, held, stated] =
+                [Some(Hold::Sampled), Some(Hold::ZeroOrder), None].map(delay);
+            assert_eq!((sampled, held, stated), (!told, false, false), "{late}");
+            assert_eq!(refused(Some(Hold::Sampled), "actuator-lag", &[("tau", late)]), !told);
+            let second = [("tau", late), ("zeta", 0.5)];
+            assert_eq!(refused(Some(Hold::Sampled), "actuator-lag:second-order", &second), !told);
+        }
+        assert!(!refused(Some(Hold::Sampled), "stribeck", &[]));
+    }
+}

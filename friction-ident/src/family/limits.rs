@@ -271,3 +271,41 @@ fn line(trials: Trials, parameter: &TermParameter) -> Vec<f64> {
             .collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::family::testing::{family, model};
+    use missing_physics::ModelFamily;
+
+    #[test]
+    fn a_friction_by_the_force_of_inertia_is_less_than_the_mass_and_a_coupling_rings() {
+        let family = family();
+        let limit = |name: &str, parameter: &str, values: &[(&str, f64)]| {
+            let all = [values, &[("m", 20.0)]].concat();
+            let model = model(&family, &["mass", "coulomb", name], &all);
+            let term = *model.terms.last().unwrap();
+            let parameters = &family.terms[term].parameters;
+            let k = parameters.iter().position(|p| p.name == parameter).unwrap();
+            let mass = model.values[0];
+            (family.limits(&model, term, k).1, parameters[k].upper, mass)
+        };
+        let (most, _, mass) = limit("load-friction:both", "c", &[]);
+        assert_eq!(most, 0.9 * mass);
+        let (most, searched, _) = limit("load-friction:both", "mu", &[]);
+        assert_eq!(most, searched);
+        // A drift without end is a level where the model has no other.
+        let (beside_level, searched, _) = limit("drift", "tau", &[]);
+        assert_eq!(beside_level, searched);
+        let alone = model(&family, &["mass", "viscous", "drift"], &[("m", 20.0)]);
+        let time = family.recording.time();
+        let duration = time[time.len() - 1] - time[0];
+        assert_eq!(family.limits(&alone, alone.terms[2], 2).1, duration);
+        let level = &family.terms[alone.terms[2]].parameters[0];
+        assert_eq!(family.limits(&alone, alone.terms[2], 0).1, level.upper);
+        // Both bodies swing against each other, the lighter the more: what is behind damps more than it seems.
+        let (alone, ..) = limit("flexible-coupling", "zeta", &[("m_L", 1e-9)]);
+        assert!((alone - 0.383).abs() < 1e-6);
+        let (behind, _, mass) = limit("flexible-coupling", "zeta", &[("m_L", 10.0)]);
+        assert!((behind / (0.383 / (1.0 + 10.0 / mass).sqrt()) - 1.0).abs() < 1e-12);
+    }
+}

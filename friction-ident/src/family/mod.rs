@@ -28,6 +28,8 @@ mod regimes;
 mod samples;
 mod surrogates;
 mod sweep;
+#[cfg(test)]
+mod testing;
 mod typed;
 mod views;
 

@@ -39,6 +39,11 @@ pub enum Remark {
         /// Share of the recording that was searched.
         share: f64,
     },
+    /// The last model errs so much less than the sensors are said to that their noise was taken as too large.
+    SensorsBetter {
+        /// Prediction error of the last model in multiples of what the sensors make.
+        times: f64,
+    },
     /// Time ran out, or Ctrl-C came, after the search: maps and tests of the residual were left out.
     ToldInBrief,
     /// Of a very long recording pieces spread over it were looked at.

@@ -109,6 +109,18 @@ fn a_budget_that_nobody_knows_is_not_told() {
 }
 
 #[test]
+fn a_model_that_errs_far_less_than_the_sensors_says_so() {
+    let plant = Plant::new(1, &HIDDEN);
+    let remarks = |times: f64| {
+        let mut base = node(&plant, &[]);
+        base.scale = times * plant.budget();
+        told(&plant, Found::of(base)).remarks
+    };
+    assert!(remarks(0.6).is_empty());
+    assert_eq!(remarks(0.25), [Remark::SensorsBetter { times: 0.25 }]);
+}
+
+#[test]
 fn where_nothing_was_added_the_base_fails_where_the_last_model_does() {
     let plant = Plant::new(1, &HIDDEN);
     let nothing = told(&plant, Found::of(node(&plant, &[])));

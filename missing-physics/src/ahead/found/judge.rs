@@ -1,0 +1,359 @@
+//! Whether what was found is the cause.
+
+use super::Found;
+use crate::ahead::astray::astray;
+use crate::ahead::node::Node;
+use crate::ahead::{Ahead, local};
+use crate::family::ModelFamily;
+use crate::report::{Lacking, NoCause, Remains, Remark};
+use crate::statistics::basis::dot;
+use crate::task::Thresholds;
+
+/// Share of the squared force that a model lacks which effects may leave and still be its cause: the smaller part.
+const MOST: f64 = 0.5;
+/// The same where the base model hardly errs more than the sensors: there the force is all that tells.
+pub const MOST_WITHIN: f64 = 0.05;
+/// Share of what the base model errs beyond the sensors, squared, and of the force that it lacks, that a model leaves at most:
+/// what leaves more is not what is missing.
+const LEFT: f64 = 0.88;
+
+impl Found {
+    /// Where the last model fails, and whether it does at all.
+    pub fn place<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let top = self.rungs.last().unwrap_or(&self.base);
+        self.places = left_by(top, family, ahead, thresholds);
+        self.places.splice(0..0, self.rival.clone());
+        self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
+    }
+
+    /// Takes all names back where they are not the cause: the error does not fall with them, what is left is in a few wild
+    /// samples, samples are known to be faulty, the greater part of the force that the base model lacks is still lacking
+    /// beyond doubt, or what is no effect does more.
+    pub fn judge<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let Some(top) = self.rungs.last() else { return };
+        let astray = self.places.iter().find_map(|place| match place {
+            Remains::Astray { astray } => Some(NoCause::Astray { astray: astray.clone() }),
+            _ => None,
+        });
+        let no_cause = ahead.is_no_cause(&self.base.model, &top.model).or(astray);
+        // Below what the sensors make there are no shares.
+        let beyond = ahead.has_shares() && top.scale > ahead.budget();
+        let within = top.scale <= thresholds.complete * ahead.budget();
+        let idle = beyond && leaves_most(&self.base, top, ahead.budget())
+            || self.leaves_force(ahead, if within { thresholds.local } else { 0.0 });
+        let falls = top.foretells_more(&self.base) && !idle;
+        if self.complete && falls && no_cause.is_none() {
+            return;
+        }
+        let still = self.still_lacking(family, ahead, (thresholds.local, MOST));
+        // A few wild samples that are left speak against what explains less than they are.
+        let square = |node: &Node| dot(&node.errors, &node.errors);
+        let explained = square(&self.base) - square(top);
+        let wild = local::faults(&top.errors).map(|share| share * square(top));
+        let faulty = wild.is_some_and(|wild| wild > explained) || ahead.faults().is_some();
+        if falls && still.is_none() && !faulty && no_cause.is_none() {
+            return;
+        }
+        let lacking = still.map(|(lacking, _)| lacking);
+        self.taken_back(family, ahead, thresholds, (lacking, no_cause));
+    }
+
+    /// Takes all names back where the last model hardly errs more than the sensors, and some of the force that the base lacks
+    /// is still lacking beyond doubt: where errors tell so little, what is there explains that force, and what only imitates
+    /// it does so in part. What every system has is asked nothing.
+    pub fn judge_force<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let within = self.top().0.scale / ahead.budget() <= thresholds.complete;
+        if !within || self.added.iter().all(|term| family.is_usual(*term)) {
+            return;
+        }
+        let still = self.still_lacking(family, ahead, (thresholds.complete, MOST_WITHIN));
+        if let Some((lacking, band)) = still {
+            let because = Some(NoCause::LeavesForce { band });
+            self.taken_back(family, ahead, thresholds, (Some(lacking), because));
+        }
+    }
+
+    /// Whether nearly all of the force that the base model lacks, of more than so many bands, is still lacking, however well
+    /// that is known of the last model. Where errors are not those of the sensors an effect lowers them by following what no
+    /// force stands behind: a command that changes between two samples.
+    fn leaves_force(&self, ahead: &dyn Ahead, bands: f64) -> bool {
+        let both = self.top().0.lacks(ahead).zip(self.base.lacks(ahead));
+        both.is_some_and(|((last, _), (base, band))| {
+            base > bands * band && last * last > LEFT * base * base
+        })
+    }
+
+    /// The force that is lacking before and after, and its 95 % band, where the last model leaves more than so many bands and
+    /// more than a share of the square.
+    fn still_lacking<F: ModelFamily + ?Sized>(
+        &self,
+        family: &F,
+        ahead: &dyn Ahead,
+        (bands, share): (f64, f64),
+    ) -> Option<(Lacking, f64)> {
+        let ((last, band), (base, _)) = self.top().0.lacks(ahead).zip(self.base.lacks(ahead))?;
+        let still = last > bands * band && last * last > share * base * base;
+        still.then(|| (Lacking { base, last, unit: family.quantity().unit }, band))
+    }
+
+    fn taken_back<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+        (lacking, because): (Option<Lacking>, Option<NoCause>),
+    ) {
+        let names = self.added.iter().map(|term| family.terms()[*term].name.clone());
+        self.remarks.push(Remark::NotTheCause {
+            effects: names.collect(),
+            base: self.base.scale / ahead.budget(),
+            last: self.top().0.scale / ahead.budget(),
+            lacking,
+            because,
+        });
+        self.places = left_by(&self.base, family, ahead, thresholds);
+        self.complete = false;
+        self.rungs.clear();
+        self.added.clear();
+        self.gains.clear();
+        self.costs.clear();
+        self.p_values.clear();
+    }
+}
+
+/// Whether a model leaves nearly all of what the base errs beyond the sensors.
+pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
+    let beyond = |node: &Node| (node.scale / budget).powi(2) - 1.0;
+    beyond(base) <= 0.0 || beyond(node) > LEFT * beyond(base)
+}
+
+/// What a model leaves, whether its errors show it or not.
+fn left_by<F: ModelFamily + ?Sized>(
+    node: &Node,
+    family: &F,
+    ahead: &dyn Ahead,
+    thresholds: &Thresholds,
+) -> Vec<Remains> {
+    let shows = local::places(ahead, node, thresholds.local, &family.quantity().unit);
+    let astray =
+        astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray });
+    let hidden = ahead.remains(&node.model, thresholds.complete);
+    astray.into_iter().chain(hidden).chain(shows).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ahead::fit;
+    use crate::ahead::testing::{Plant, TONE, WAVE};
+    use crate::family::Series;
+    use crate::report::Fault;
+
+    /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
+    fn found(lacks: Option<f64>) -> (Plant, Found) {
+        let mut plant = Plant::new(1, &[(WAVE, &[0.05])]);
+        plant.lacks = lacks.map(|band| Series {
+            time: vec![0.0, 0.1],
+            force: vec![2.0, -2.0],
+            deviation: vec![band / 1.96; 2],
+            recorded: vec![9.0; 2],
+            known: vec![true; 2],
+        });
+        let node = |terms| fit::evaluated(&plant, Plant::model(terms), 0);
+        let (base, rung) = (node(&[]), node(&[(WAVE, &[0.05])]));
+        let mut found = Found { added: vec![WAVE], rungs: vec![rung], ..Found::of(base) };
+        found.place(&plant, &plant, &Thresholds::default());
+        (plant, found)
+    }
+
+    #[test]
+    fn names_go_where_the_force_that_is_lacking_is_still_lacking() {
+        let (plant, mut found) = found(Some(0.5));
+        assert!(!found.complete);
+        assert_eq!(
+            found.places[0],
+            Remains::MissingForce { rms: 2.0, band: 0.5, unit: "V".into() }
+        );
+        found.judge(&plant, &plant, &Thresholds::default());
+        assert!(found.added.is_empty() && found.rungs.is_empty() && !found.complete);
+        let [Remark::NotTheCause { effects, base, last, lacking, because }] = &found.remarks[..]
+        else {
+            panic!("{:?}", found.remarks)
+        };
+        assert_eq!((effects.as_slice(), because), (&["wave".to_owned()][..], &None));
+        assert!(base > last, "{base} {last}");
+        assert_eq!(lacking, &Some(Lacking { base: 2.0, last: 2.0, unit: "V".into() }));
+    }
+
+    #[test]
+    fn names_stand_where_that_force_is_not_known_or_nothing_is_left() {
+        for lacks in [Some(1.5), None] {
+            let (plant, mut found) = found(lacks);
+            found.judge(&plant, &plant, &Thresholds::default());
+            assert!(found.complete, "{:?}", found.places);
+            assert_eq!((found.added.as_slice(), found.remarks.len()), (&[WAVE][..], 0));
+        }
+    }
+
+    #[test]
+    fn names_go_where_the_error_does_not_fall_with_them() {
+        let (plant, mut found) = found(None);
+        let smaller = found.rungs[0].errors.iter().map(|e| 0.99 * e).collect();
+        let model = found.base.model.clone();
+        found.base = Node::new(&plant, model, found.base.setting, smaller);
+        assert!(found.complete);
+        found.judge(&plant, &plant, &Thresholds::default());
+        assert!(found.added.is_empty() && !found.complete);
+        assert!(matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]));
+    }
+
+    #[test]
+    fn names_go_where_an_incomplete_model_leaves_nearly_all_of_a_force_that_is_in_doubt() {
+        // Of a model that errs no more than the sensors where the base lacks it beyond doubt.
+        let cases = [
+            (1.9, 0.5, 3.0, false),
+            (1.85, 0.5, 3.0, true),
+            (1.9, 1.3, 3.0, true),
+            (1.9, 1.3, 0.9, false),
+            (1.85, 1.3, 0.9, true),
+        ];
+        for (left, complete, band, stays) in cases {
+            let (plant, mut found) = found(Some(3.0));
+            let lacks = |rms: f64, band: f64| Series {
+                force: vec![rms, -rms],
+                deviation: vec![band / 1.96; 2],
+                ..plant.lacks.clone().unwrap()
+            };
+            found.base = found.base.lacking(lacks(2.0, band));
+            found.rungs[0] = found.rungs[0].clone().lacking(lacks(left, 3.0));
+            found.complete = complete >= 1.0;
+            found.judge(&plant, &plant, &Thresholds { complete, ..Thresholds::default() });
+            assert_eq!(!found.added.is_empty(), stays, "{left} {complete} {band}");
+        }
+    }
+
+    #[test]
+    fn names_go_where_an_incomplete_model_leaves_nearly_all_that_the_base_errs() {
+        for (last, stays) in [(1.25, true), (1.28, false)] {
+            let (plant, mut found) = found(None);
+            let scaled = |node: &Node, times: f64| {
+                let factor = times * plant.budget() / node.scale;
+                let errors = node.errors.iter().map(|e| factor * e).collect();
+                Node::new(&plant, node.model.clone(), node.setting, errors)
+            };
+            found.base = scaled(&found.base, 1.29);
+            found.rungs = vec![scaled(&found.rungs[0], last)];
+            found.complete = false;
+            found.judge(&plant, &plant, &Thresholds::default());
+            assert_eq!(!found.added.is_empty(), stays, "{last}: {:?}", found.remarks);
+        }
+    }
+
+    #[test]
+    fn names_go_and_nothing_is_complete_where_what_every_model_has_is_astray() {
+        let (plant, mut found) = found(None);
+        for node in std::iter::once(&mut found.base).chain(&mut found.rungs) {
+            node.model.values[0] = 5.0;
+        }
+        found.place(&plant, &plant, &Thresholds::default());
+        assert!(matches!(&found.places[..], [Remains::Astray { .. }]) && !found.complete);
+        found.judge(&plant, &plant, &Thresholds::default());
+        let because = |remark: &Remark| match remark {
+            Remark::NotTheCause { because: Some(NoCause::Astray { astray }), .. } => astray.value,
+            _ => 0.0,
+        };
+        assert_eq!((found.added.len(), because(&found.remarks[0])), (0, 5.0));
+        assert!(matches!(&found.places[..], [Remains::Astray { .. }, ..]));
+    }
+
+    #[test]
+    fn names_go_where_nearly_all_of_what_is_missing_is_left() {
+        // The tone is not found.
+        let stands = |tone: f64, wave: f64| {
+            let plant = Plant::new(3, &[(TONE, &[tone, 5.0]), (WAVE, &[wave])]);
+            let node = |terms| fit::evaluated(&plant, Plant::model(terms), 0);
+            let (base, rung) = (node(&[]), node(&[(WAVE, &[wave])]));
+            let mut found = Found { added: vec![WAVE], rungs: vec![rung], ..Found::of(base) };
+            found.judge(&plant, &plant, &Thresholds::default());
+            !found.added.is_empty()
+        };
+        assert!(!stands(0.1, 0.02));
+        // More than a tenth of it, and all of it.
+        assert!(stands(0.1, 0.1) && stands(0.0, 0.02));
+    }
+
+    #[test]
+    fn names_go_where_what_is_left_is_in_a_few_wild_samples() {
+        let (plant, found) = found(None);
+        let square = |node: &Node| dot(&node.errors, &node.errors);
+        let explained = square(&found.base) - square(found.top().0);
+        // A third of what the wave explains is left in one sample, or all of it.
+        for (wild, stands) in [(explained / 3.0, true), (explained, false)] {
+            let mut found = found.clone();
+            let top = found.rungs.pop().unwrap();
+            let mut errors = top.errors.clone();
+            errors[700] = wild.sqrt();
+            found.rungs.push(Node::new(&plant, top.model.clone(), top.setting, errors));
+            found.place(&plant, &plant, &Thresholds::default());
+            let isolated = |remains: &Remains| matches!(remains, Remains::Faulty { fault: Fault::Isolated { share } } if *share > 0.5);
+            assert!(found.places.iter().any(isolated), "{:?}", found.places);
+            found.judge(&plant, &plant, &Thresholds::default());
+            assert_eq!(!found.added.is_empty(), stands);
+            let taken_back =
+                matches!(&found.remarks[..], [Remark::NotTheCause { lacking: None, .. }]);
+            assert_eq!(taken_back, !stands);
+        }
+    }
+
+    #[test]
+    fn names_go_where_errors_within_the_sensors_hide_a_force_that_is_still_lacking() {
+        // Every model lacks 2 V; as large as the base's errors are, the sensors' are taken to be.
+        let told = |complete: f64, band: f64, usual: Vec<usize>| {
+            let (mut plant, mut found) = found(Some(band));
+            plant.usual = usual;
+            let thresholds = Thresholds { complete, ..Thresholds::default() };
+            found.judge_force(&plant, &plant, &thresholds);
+            (found.added, found.remarks)
+        };
+        let (added, remarks) = told(30.0, 0.06, Vec::new());
+        assert!(added.is_empty());
+        let [Remark::NotTheCause { lacking, because, .. }] = &remarks[..] else { panic!() };
+        assert_eq!(lacking, &Some(Lacking { base: 2.0, last: 2.0, unit: "V".into() }));
+        let Some(NoCause::LeavesForce { band }) = because else { panic!("{because:?}") };
+        assert!((band - 0.06).abs() < 1e-9);
+        // So they do where the base errs more.
+        assert!(told(1.3, 0.06, Vec::new()).0.is_empty());
+        // Where that is in doubt, where errors tell more, of what every system has, and where little is left of it.
+        assert_eq!(told(30.0, 0.07, Vec::new()).0, [WAVE]);
+        assert_eq!(told(0.5, 0.06, Vec::new()).0, [WAVE]);
+        assert_eq!(told(30.0, 0.06, vec![WAVE]).0, [WAVE]);
+        for (left, names) in [(0.4, 1), (0.5, 0)] {
+            let (plant, mut found) = found(Some(0.01));
+            let lacks =
+                |rms: f64| Series { force: vec![rms, -rms], ..plant.lacks.clone().unwrap() };
+            found.base = found.base.lacking(lacks(2.0));
+            found.rungs[0] = found.rungs[0].clone().lacking(lacks(left));
+            found.judge_force(
+                &plant,
+                &plant,
+                &Thresholds { complete: 30.0, ..Thresholds::default() },
+            );
+            assert_eq!(found.added.len(), names, "{left}");
+        }
+    }
+}
