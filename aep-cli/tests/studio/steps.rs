@@ -467,5 +467,5 @@ fn times() {
         .map(|m| m["name"].as_str().unwrap())
         .collect();
     println!("EMPS: {added:?}");
-    assert_eq!(added[0], "+ asymmetry");
+    assert!(added.contains(&"+ asymmetry"), "{added:?}");
 }
