@@ -134,6 +134,9 @@ pub fn no_cause(why: &NoCause) -> String {
     match why {
         NoCause::Astray { astray } => self::astray(astray),
         NoCause::PlainDoesMore { place } => format!("{} does more", pattern(place)),
+        NoCause::Foretold => {
+            "the errors before each sample foretell as much, as counts that beat with the samples do".to_owned()
+        }
         NoCause::MostIsLeft { coordinate } => {
             format!("most of what depends on {coordinate} is left")
         }

@@ -69,6 +69,11 @@ pub fn remark(remark: &Remark) -> String {
             };
             format!("The {input} is taken as {how}: {why}.")
         }
+        Remark::Smoothed { input, below } => format!(
+            "The {input} is recorded with noise that did not act: filtered below {}, without a delay, it predicts better. What \
+             is said is said of the filtered {input}.",
+            quantity(*below, "Hz")
+        ),
         Remark::Given { input, most_shift } => format!(
             "The {input} that your model gives is taken over time, nothing of ours beside it. What its samples and \
              filters make is fitted and no effect: a shift of up to {most_shift} samples (timing.shift) and a smoothing \

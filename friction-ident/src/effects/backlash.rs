@@ -18,7 +18,7 @@ use crate::simd::sign;
 pub struct Backlash;
 
 const WIDTH: Parameter =
-    Parameter::shape("b", "width of the gap", Quantity::Length, (1e-6, 1e-2), 2e-5);
+    Parameter::shape("b", "width of the gap", Quantity::Length, (1e-6, 0.1), 2e-5);
 
 /// A gap below this multiple of the least one is none.
 const CLOSED: f64 = 1.05;

@@ -25,7 +25,7 @@ const PERIOD: Parameter = Parameter::shape(
     "p",
     "period: of the grating, or way per turn",
     Quantity::Length,
-    (1e-6, 0.05),
+    (1e-6, 20.0),
     5e-3,
 );
 const PERIODIC: Periodic =
@@ -39,8 +39,8 @@ static ABOUT: About = About {
     title: "periodic error of the encoder (sub-division, eccentricity)",
     equation: "x + a sin(2 pi x/p) + b cos(2 pi x/p) is shown",
     parameters: &[
-        Parameter::signed("a", "sine amplitude", Quantity::Length, 1e-4, 1e-6),
-        Parameter::signed("b", "cosine amplitude", Quantity::Length, 1e-4, 1e-6),
+        Parameter::signed("a", "sine amplitude", Quantity::Length, 2e-3, 1e-6),
+        Parameter::signed("b", "cosine amplitude", Quantity::Length, 2e-3, 1e-6),
         PERIOD,
     ],
     slots: &[Slot::Sensor],

@@ -28,7 +28,7 @@ static FORMS: [&dyn Effect; 2] = [&HARMONICS, &DIRECTION];
 const COUNT: usize = 6;
 const SHOWS: &str = "a line at 1/l in the residual's spectrum over position";
 const PERIOD: Parameter =
-    Parameter::shape("l", "period: screw lead, pole pitch", Quantity::Length, (2e-4, 0.2), 5e-3);
+    Parameter::shape("l", "period: screw lead, pole pitch", Quantity::Length, (2e-4, 20.0), 5e-3);
 
 /// How a ripple repeats.
 const PERIODIC: Periodic =

@@ -26,6 +26,7 @@ mod points;
 mod preparation;
 mod regimes;
 mod samples;
+mod smoothed;
 mod surrogates;
 mod sweep;
 #[cfg(test)]
@@ -98,6 +99,10 @@ pub struct FrictionFamily {
     stroke: (f64, f64),
     hold: Option<HoldChoice>,
     other_hold: Option<Box<Self>>,
+    /// The cut-off below which its force was taken, Hz.
+    smoothing: Option<f64>,
+    /// The same recording with the noise of its force smoothed away.
+    filtered: smoothed::Filtered,
     /// The force that another model gives, where the recording has one: the models here stand beside it.
     given: Option<given::Given>,
     /// The same of pieces of a long recording.
@@ -174,6 +179,8 @@ impl FrictionFamily {
             stroke,
             hold: None,
             other_hold: None,
+            smoothing: None,
+            filtered: smoothed::Filtered::default(),
             part: None,
             given: None,
             ahead: None,
@@ -619,8 +626,17 @@ impl ModelFamily for FrictionFamily {
         Some(OtherReading { family: self.other_hold.as_deref()?, nats, decided: !by_search })
     }
 
+    fn without_noise(&self, more: usize) -> Option<&Self> {
+        self.filtered(more)
+    }
+
+    fn without_lateness(&self, model: &Fitted) -> Fitted {
+        self.in_time(model)
+    }
+
     fn reading(&self) -> Vec<Remark> {
         let input = self.quantity().name;
+        let smoothed = self.smoothing.map(|below| Remark::Smoothed { input: input.clone(), below });
         let read = if self.given.is_some() {
             Some(Remark::Given { input, most_shift: given::MOST_SHIFT })
         } else {
@@ -629,7 +645,7 @@ impl ModelFamily for FrictionFamily {
         let (looked_at, pieces) = (self.recording.len(), self.recording.segments().len());
         let taken_from = self.recording.taken_from();
         let in_pieces = taken_from.map(|samples| Remark::InPieces { samples, looked_at, pieces });
-        read.into_iter().chain(in_pieces).collect()
+        read.into_iter().chain(smoothed).chain(in_pieces).collect()
     }
 
     fn in_part(&self) -> Option<&Self> {

@@ -32,11 +32,12 @@ impl Law {
         self.of.order() == 0
     }
 
-    /// Of errors that lie at `instants` of a recording; pieces of it have nothing to do with each other.
-    pub fn of(errors: &[f64], instants: &[(f64, usize)]) -> Self {
+    /// Of errors that lie at `instants` of a recording, each foretold by so many at most; pieces of it have nothing to do with
+    /// each other.
+    pub fn of(errors: &[f64], instants: &[(f64, usize)], order: usize) -> Self {
         let usual = statistics::spread(errors).max(LEAST * statistics::rms(errors, f64::INFINITY));
         let cut: Vec<f64> = errors.iter().map(|e| e.max(-CUT * usual).min(CUT * usual)).collect();
-        Self { of: Autoregression::of(&cut, &runs(instants), ORDER, 1.0) }
+        Self { of: Autoregression::of(&cut, &runs(instants), order, 1.0) }
     }
 
     /// What it leaves of errors.
@@ -89,7 +90,7 @@ mod tests {
         let made = noise(20_000, 1);
         let errors = ringing(&made);
         let instants = one_piece(errors.len());
-        let law = Law::of(&errors, &instants);
+        let law = Law::of(&errors, &instants, ORDER);
         let found = &law.of.with_before(ORDER).coefficients;
         let (first, second) = (found[0], found[1]);
         assert!((first - 1.5).abs() < 0.05 && (second + 0.81).abs() < 0.05, "{first} {second}");
@@ -103,13 +104,13 @@ mod tests {
     fn errors_that_nothing_foretells_stay_as_they_are() {
         let errors = noise(5_000, 2);
         let instants = one_piece(errors.len());
-        let left = Law::of(&errors, &instants).left(&errors, &instants);
+        let left = Law::of(&errors, &instants, ORDER).left(&errors, &instants);
         let off: Vec<f64> = left.iter().zip(&errors).map(|(a, b)| a - b).collect();
         assert!(statistics::rms(&off, f64::INFINITY) < 0.06);
         // Nothing is known of none.
         for nothing in [vec![0.0; 50], vec![f64::NAN; 50], Vec::new()] {
             let instants = &instants[..nothing.len()];
-            let left = Law::of(&nothing, instants).left(&nothing, instants);
+            let left = Law::of(&nothing, instants, ORDER).left(&nothing, instants);
             assert_eq!(format!("{left:?}"), format!("{nothing:?}"));
         }
     }
@@ -118,7 +119,7 @@ mod tests {
     fn pieces_have_nothing_to_do_with_each_other() {
         let errors = ringing(&noise(2_000, 3));
         let instants: Vec<(f64, usize)> = (0..2_000).map(|k| (k as f64, k / 500)).collect();
-        let law = Law::of(&errors, &instants);
+        let law = Law::of(&errors, &instants, ORDER);
         let left = law.left(&errors, &instants);
         for first in [0, 500, 1000, 1500] {
             assert_eq!(left[first], errors[first]);
@@ -134,7 +135,7 @@ mod tests {
         errors[7_000] = 1e3;
         errors[7_001] = 1e3;
         // As they are these two would say that half of an error follows from the one before.
-        let law = Law::of(&errors, &instants);
+        let law = Law::of(&errors, &instants, ORDER);
         let found = &law.of.with_before(1).coefficients;
         assert!(found[0].abs() < 0.02, "{found:?}");
     }
@@ -147,7 +148,7 @@ mod tests {
         let error = |(k, e): (usize, &f64)| if moves(k) { *e } else { 0.0 };
         let errors: Vec<f64> = ringing.iter().enumerate().map(error).collect();
         let instants = one_piece(errors.len());
-        let left = Law::of(&errors, &instants).left(&errors, &instants);
+        let left = Law::of(&errors, &instants, ORDER).left(&errors, &instants);
         let rms = |values: &[f64]| statistics::rms(values, f64::INFINITY);
         assert!(rms(&left) < 0.5 * rms(&errors), "{} {}", rms(&left), rms(&errors));
     }

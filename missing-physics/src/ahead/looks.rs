@@ -8,7 +8,7 @@ use super::as_read::{Other, Reading};
 use super::astray::elsewhere;
 use super::beam::{Climb, Search, Tell};
 use super::fit::{Fitter, best_setting};
-use super::found::Found;
+use super::found::{Found, IN_FULL};
 use super::node::Node;
 use super::reading;
 use super::report::Report;
@@ -311,13 +311,65 @@ impl<'a> Run<'a> {
         Pursuit { reading, search, climb }
     }
 
-    /// What was found, as a discovery.
+    /// What was found, as a discovery; once more where noise of the input is in the way.
     fn told<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
-        (self.tell)(&Event::Finishing);
-        let Sought { reading, mut found, on_part } = sought;
-        let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
         // Only what is told: another look must not stand for want of this one.
-        found.judge_force(family, ahead, &self.thresholds);
+        let judged = |mut sought: Sought<'_, F>| {
+            let ahead = sought.reading.asked(sought.on_part);
+            sought.found.judge_force(sought.reading.family, ahead, &self.thresholds);
+            self.reported(sought)
+        };
+        let Some(reading) = self.without_noise(&sought) else { return judged(sought) };
+        let before = sought.found.decisions;
+        self.looked(&reading, None, |again| judged(again.after(before)))
+    }
+
+    /// The reading in which noise of the input is smoothed away, no more of it than it takes for a model to predict better:
+    /// than with effects that make the input late, or than where something is left.
+    fn without_noise<'f, F: ModelFamily + ?Sized>(
+        &self,
+        sought: &Sought<'f, F>,
+    ) -> Option<Reading<'f, F>> {
+        let Sought { reading, found, on_part } = sought;
+        let mut judged = found.clone();
+        judged.judge_force(reading.family, reading.asked(*on_part), &self.thresholds);
+        let (top, effects) = found.top();
+        let without = reading.family.without_lateness(&top.model);
+        // What the base model has stays.
+        let is_kept = found.base.model.terms.iter().all(|term| without.terms.contains(term));
+        let late = top.model.terms.len() - without.terms.len();
+        if !is_kept || late == 0 && judged.complete {
+            return None;
+        }
+        let mut before = f64::NEG_INFINITY;
+        for more in 0.. {
+            if (self.stop)() {
+                return None;
+            }
+            let family = reading.family.without_noise(more)?;
+            let smoothed = Reading::of(family)?;
+            let ahead = smoothed.asked(*on_part);
+            let fitter = Fitter::new(family, ahead).stopped_by(self.stop);
+            let setting = best_setting(ahead, &without);
+            let node = fitter.refit(without.clone(), setting, IN_FULL);
+            let better = self.thresholds.in_part(ahead.share()).better;
+            let nats = reading::nats((&node, effects - late), (top, effects), better);
+            if nats > if late == 0 { better } else { 0.0 } {
+                return Some(smoothed);
+            }
+            // More takes away what acted.
+            if nats <= before {
+                return None;
+            }
+            before = nats;
+        }
+        None
+    }
+
+    fn reported<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
+        (self.tell)(&Event::Finishing);
+        let Sought { reading, found, on_part } = sought;
+        let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
         let report = Report { family, ahead, settings, found, brief: on_part, stop: self.stop };
         let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());

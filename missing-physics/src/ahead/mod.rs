@@ -12,6 +12,7 @@ mod beam;
 pub mod chance;
 pub mod compare;
 pub mod fit;
+mod foretold;
 mod found;
 mod intervals;
 mod law;

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::law::Law;
+use super::law::{Law, ORDER};
 use super::predictive::Cost;
 use super::{Ahead, scales, statistics};
 use crate::family::{Fitted, ModelFamily, Series};
@@ -38,8 +38,11 @@ impl Node {
     /// A model with its errors.
     pub fn new(ahead: &dyn Ahead, model: Fitted, setting: usize, errors: Vec<f64>) -> Self {
         let size = |errors: &[f64]| statistics::rms(errors, CUT).max(f64::MIN_POSITIVE);
-        let law =
-            if ahead.is_coloured() { Law::of(&errors, ahead.instants()) } else { Law::none() };
+        let law = if ahead.is_coloured() {
+            Law::of(&errors, ahead.instants(), ORDER)
+        } else {
+            Law::none()
+        };
         let innovations = law.left(&errors, ahead.instants());
         let (scale, deviation) = (size(&errors), size(&innovations));
         Self {

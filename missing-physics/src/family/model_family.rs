@@ -125,6 +125,16 @@ pub trait ModelFamily: Sync {
         None
     }
 
+    /// The same recording with noise of its input smoothed away, without a delay; more of it the larger the number, from 0.
+    fn without_noise(&self, _more: usize) -> Option<&Self> {
+        None
+    }
+
+    /// A model without effects that make the input late: they smooth its noise, too.
+    fn without_lateness(&self, model: &Fitted) -> Fitted {
+        model.clone()
+    }
+
     /// How the recording was read: what nobody stated, what was left out.
     fn reading(&self) -> Vec<Remark> {
         Vec::new()

@@ -163,6 +163,18 @@ impl Recording {
         self
     }
 
+    /// The same with other channels.
+    ///
+    /// # Errors
+    /// One is of another length or not finite somewhere.
+    pub fn with_channels(self, channels: Vec<Channel>) -> Result<Self, RecordingError> {
+        for channel in &channels {
+            check_length(&channel.name, channel.values.len(), self.len())?;
+            check_finite(&channel.name, &channel.values)?;
+        }
+        Ok(Self { channels, ..self })
+    }
+
     /// These parts of it, in order, each a segment of its own.
     ///
     /// # Errors

@@ -143,6 +143,8 @@ pub enum NoCause {
         /// What.
         place: Where,
     },
+    /// An autoregression of the base model's errors foretells what they gain: counts that beat with the samples.
+    Foretold,
     /// Most of what depended on a coordinate still does.
     MostIsLeft {
         /// The coordinate.

@@ -100,6 +100,14 @@ pub enum Remark {
         /// Whether that is too little, so that the search decided.
         by_search: bool,
     },
+    /// The noise of the input was smoothed away: models predict better so, and better than with an
+    /// effect that makes it late.
+    Smoothed {
+        /// The input.
+        input: String,
+        /// Cut-off of the filter, Hz.
+        below: f64,
+    },
     /// Another model gives the input.
     Given {
         /// The input.

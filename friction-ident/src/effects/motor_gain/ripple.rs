@@ -18,7 +18,7 @@ static ABOUT: About = About {
     parameters: &[
         Parameter::signed("a", "sine amplitude, of the mean gain", Quantity::One, 0.9, 0.05),
         Parameter::signed("b", "cosine amplitude, of the mean gain", Quantity::One, 0.9, 0.0),
-        Parameter::shape("l", "period: pole pitch", Quantity::Length, (1e-3, 0.5), 3e-2),
+        Parameter::shape("l", "period: pole pitch", Quantity::Length, (1e-3, 20.0), 3e-2),
     ],
     slots: &[Slot::SmoothForce],
     shows: "a line at 1/l in the spectrum of (residual / force) over position: a ripple that grows with the force",

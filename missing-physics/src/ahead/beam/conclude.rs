@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
+use crate::ahead::foretold::is_foretold;
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
 use crate::ahead::refused::not_told;
@@ -115,6 +116,8 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             Some(Reason::ErrorNoLower)
         } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
+        } else if is_foretold(self.ahead, without, set, cost.nats, self.thresholds.better) {
+            Some(Reason::Foretold)
         } else {
             None
         }

@@ -2,6 +2,8 @@
 
 use super::Found;
 use crate::ahead::astray::astray;
+use crate::ahead::compare::Comparison;
+use crate::ahead::foretold::is_foretold;
 use crate::ahead::node::Node;
 use crate::ahead::{Ahead, local};
 use crate::family::ModelFamily;
@@ -26,9 +28,14 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let top = self.rungs.last().unwrap_or(&self.base);
-        self.places = left_by(top, family, ahead, thresholds);
-        self.places.splice(0..0, self.rival.clone());
-        self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
+        let within = |node: &Node| node.scale <= thresholds.complete * ahead.budget();
+        // What takes the errors to the sensors' does not fail to heed the input, whatever a balance of forces says: beside a
+        // second body that rings that says little.
+        let heeds = within(top) && !within(&self.base);
+        let astray = (!heeds).then(|| astray_in(top, family, ahead)).flatten();
+        let places = self.rival.iter().cloned().chain(astray);
+        self.places = places.chain(left_by(top, family, ahead, thresholds)).collect();
+        self.complete = within(top) && self.places.is_empty();
     }
 
     /// Takes all names back where they are not the cause: the error does not fall with them, what is left is in a few wild
@@ -41,6 +48,13 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let Some(top) = self.rungs.last() else { return };
+        let nats = Comparison::new(family, ahead).unfitted(&self.base, top).nats;
+        if is_foretold(ahead, &self.base, top, nats, thresholds.better) {
+            self.taken_back(family, ahead, thresholds, (None, Some(NoCause::Foretold)));
+            // That something gains so says nothing of the base.
+            self.place(family, ahead, thresholds);
+            return;
+        }
         let astray = self.places.iter().find_map(|place| match place {
             Remains::Astray { astray } => Some(NoCause::Astray { astray: astray.clone() }),
             _ => None,
@@ -126,7 +140,8 @@ impl Found {
             lacking,
             because,
         });
-        self.places = left_by(&self.base, family, ahead, thresholds);
+        let astray = astray_in(&self.base, family, ahead).into_iter();
+        self.places = astray.chain(left_by(&self.base, family, ahead, thresholds)).collect();
         self.complete = false;
         self.rungs.clear();
         self.added.clear();
@@ -142,6 +157,15 @@ pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
     beyond(base) <= 0.0 || beyond(node) > LEFT * beyond(base)
 }
 
+/// Whether what every model has is far from where a balance of forces puts it.
+fn astray_in<F: ModelFamily + ?Sized>(
+    node: &Node,
+    family: &F,
+    ahead: &dyn Ahead,
+) -> Option<Remains> {
+    astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray })
+}
+
 /// What a model leaves, whether its errors show it or not.
 fn left_by<F: ModelFamily + ?Sized>(
     node: &Node,
@@ -150,10 +174,7 @@ fn left_by<F: ModelFamily + ?Sized>(
     thresholds: &Thresholds,
 ) -> Vec<Remains> {
     let shows = local::places(ahead, node, thresholds.local, &family.quantity().unit);
-    let astray =
-        astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray });
-    let hidden = ahead.remains(&node.model, thresholds.complete);
-    astray.into_iter().chain(hidden).chain(shows).collect()
+    ahead.remains(&node.model, thresholds.complete).into_iter().chain(shows).collect()
 }
 
 #[cfg(test)]
