@@ -39,8 +39,8 @@ static ABOUT: About = About {
     title: "periodic error of the encoder (sub-division, eccentricity)",
     equation: "x + a sin(2 pi x/p) + b cos(2 pi x/p) is shown",
     parameters: &[
-        Parameter::signed("a", "sine amplitude", Quantity::Length, 2e-3, 1e-6),
-        Parameter::signed("b", "cosine amplitude", Quantity::Length, 2e-3, 1e-6),
+        Parameter::signed("a", "sine amplitude", Quantity::Length, 5e-3, 1e-6),
+        Parameter::signed("b", "cosine amplitude", Quantity::Length, 5e-3, 1e-6),
         PERIOD,
     ],
     slots: &[Slot::Sensor],
@@ -75,6 +75,13 @@ pub fn feigned(
     (turn * cos - bend * sin, -turn * sin - bend * cos)
 }
 
+/// Whether a reading with these amplitudes of sine and cosine, two for each harmonic, rises with the position everywhere.
+fn runs_forwards(amplitudes: &[f64], period: f64) -> bool {
+    let slopes =
+        (1..).zip(amplitudes.chunks(2)).map(|(k, pair)| f64::from(k) * pair[0].hypot(pair[1]));
+    TAU * slopes.sum::<f64>() < period
+}
+
 impl Effect for Encoder {
     fn about(&self) -> &'static About {
         &ABOUT
@@ -101,6 +108,10 @@ impl Effect for Encoder {
     /// What the sensor shows is in that force already.
     fn shows_beside_given_force(&self) -> bool {
         false
+    }
+
+    fn is_possible(&self, values: &[f64]) -> bool {
+        runs_forwards(&values[..2], values[2])
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
@@ -231,6 +242,13 @@ mod tests {
             assert!((v[0] - 1e-3 * t.cos()).abs() < 2e-6 * 1e-3 + 1e-9);
             assert!((a[0] + 1e-3 * t.sin()).abs() < 3e-3 * false_a.abs() + 1e-7, "{k}: {a:?}");
         }
+    }
+
+    #[test]
+    fn a_reading_runs_forwards_everywhere() {
+        assert!(Encoder.is_possible(&[0.1, 0.1, 0.9]) && !Encoder.is_possible(&[0.1, 0.1, 0.88]));
+        let both = |p: f64| harmonics::Harmonics.is_possible(&[0.1, 0.0, 0.0, 0.05, p]);
+        assert!(both(1.26) && !both(1.25));
     }
 
     #[test]

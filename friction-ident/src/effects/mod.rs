@@ -136,6 +136,11 @@ pub trait Effect: Sync + Send {
         false
     }
 
+    /// Whether a drive can have it with these values; a search does not go where it cannot.
+    fn is_possible(&self, _values: &[f64]) -> bool {
+        true
+    }
+
     /// Why it is no such effect as it was fitted (a gap of no width), in words that go on after its name; nothing where it
     /// is one.
     fn refused(&self, _found: &AsFound<'_>) -> Option<Refused> {

@@ -16,6 +16,8 @@ pub const LINE_WIDTH: f64 = 0.4;
 
 /// Largest share of the time in which a drive is at its limit.
 const SATURATED: f64 = 0.2;
+/// Typical error of an encoder, in standard deviations of the noise of the position.
+const NOISES: f64 = 10.0;
 
 /// Sizes of the recording.
 pub struct Limits {
@@ -162,6 +164,11 @@ impl Limits {
             // A motor that loses more than a third of the largest force is none that goes on pulling.
             Quantity::PerForce => return (0.0, 0.5 / self.force.most, 0.1 / self.force.most),
             Quantity::Time => return (0.0, parameter.high, self.interval),
+            // What an encoder errs shows from a few counts on.
+            Quantity::Length => {
+                let (low, high) = parameter.range(self.axis);
+                return (low, high, (NOISES * self.position_noise).clamp(1e-6 * high, high));
+            }
             _ => {
                 let (low, high) = parameter.range(self.axis);
                 let typical = parameter.typical(self.axis);

@@ -544,7 +544,14 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn predict(&self, fitted: &Fitted, out: &mut [f64]) {
+        let possible = |place: usize| {
+            let effect = self.effect(fitted.terms[place])?;
+            Some(effect.is_possible(&self.values_in_full(fitted, place)?))
+        };
         // A combination that is no plant predicts nothing; it then loses against every other.
+        if (0..fitted.terms.len()).any(|place| possible(place) == Some(false)) {
+            return out.fill(0.0);
+        }
         let Ok(force) = self.required(fitted) else { return out.fill(0.0) };
         // Nor does a law that has no value somewhere.
         if !force.iter().all(|value| value.is_finite()) {

@@ -3,7 +3,7 @@
 use super::{
     About, AsFound, CDynamics, Effect, Own, PERIOD, PERIODIC, Parameter, Parameters, Periodic,
     Quantity, REFERENCE, Refused, SHOWS, Sensor, Shown, Slot, as_small_as_rounding, corrected,
-    turned,
+    runs_forwards, turned,
 };
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -12,7 +12,7 @@ use crate::simd::{sin_cos_of_turns, vectorised};
 pub struct Harmonics;
 
 const fn amplitude(name: &'static str, meaning: &'static str) -> Parameter {
-    Parameter::signed(name, meaning, Quantity::Length, 2e-3, 1e-6)
+    Parameter::signed(name, meaning, Quantity::Length, 5e-3, 1e-6)
 }
 
 static ABOUT: About = About {
@@ -53,6 +53,10 @@ impl Effect for Harmonics {
 
     fn shows_beside_given_force(&self) -> bool {
         false
+    }
+
+    fn is_possible(&self, values: &[f64]) -> bool {
+        runs_forwards(&values[..4], values[4])
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
