@@ -101,8 +101,8 @@ fn fault(fault: &Fault) -> String {
             100.0 * share
         ),
         Fault::Isolated { share } => format!(
-            "{:.0} % of the squared error is in isolated samples: look for faults of the sampling (dropped or late \
-             samples, wrong time stamps).",
+            "{:.0} % of the squared error is in isolated samples: faults of the sampling look so (dropped or late samples, \
+             wrong time stamps), and so do impacts.",
             100.0 * share
         ),
     }
