@@ -16,13 +16,13 @@ const LEAST: usize = 500;
 /// and lasts so long, s.
 const STRETCH: f64 = 0.5;
 /// Share of what an effect gains that is enough where it must gain less.
-const SHARE: f64 = 0.5;
+const SHARE: f64 = 0.15;
 
-/// Whether a model gains less than `better` over another that errs no more than the sensors, or less than half of `nats`,
+/// Whether a model gains less than `better` over another that errs no more than the sensors, or less than a part of `nats`,
 /// once the errors of either are foretold from those before them. Of larger errors what is missing makes them alike, too.
 pub fn is_foretold(ahead: &dyn Ahead, from: &Node, to: &Node, nats: f64, better: f64) -> bool {
     let within = ahead.has_shares() && from.scale <= ahead.budget();
-    within && gain(ahead, from, to) < better.min(SHARE * nats)
+    within && nats > 0.0 && gain(ahead, from, to) < better.min(SHARE * nats)
 }
 
 /// What a model gains over another by what is left of its errors, nats.

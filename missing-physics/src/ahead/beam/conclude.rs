@@ -72,8 +72,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let mut costs: Costs = each.collect();
             costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
             let whys = costs.iter().map(|(_, cost, without)| self.why_goes(&best, *cost, without));
-            let last = whys.enumerate().filter_map(|(k, why)| Some((k, why?))).last();
-            let Some((goes, because)) = last.filter(|_| costs.len() > 1) else {
+            let mut idle: Vec<_> =
+                whys.enumerate().filter_map(|(k, why)| Some((k, why?))).collect();
+            if idle.iter().all(|(_, why)| *why == Reason::AsGoodWithout) {
+                // Each set without one is as good: the one of the fewest parameters stands.
+                idle.sort_by_key(|(k, _)| std::cmp::Reverse(self.parameters(&costs[*k].2)));
+            }
+            let Some((goes, because)) = idle.pop().filter(|_| costs.len() > 1) else {
                 return (best, costs);
             };
             let (_, cost, without) = costs.swap_remove(goes);

@@ -291,9 +291,13 @@ mod tests {
         for node in std::iter::once(&mut found.base).chain(&mut found.rungs) {
             node.model.values[0] = 5.0;
         }
+        // What takes the errors to the sensors' heeds the input.
         found.place(&plant, &plant, &Thresholds::default());
+        assert!(found.complete, "{:?}", found.places);
+        let thresholds = Thresholds { complete: 30.0, ..Thresholds::default() };
+        found.place(&plant, &plant, &thresholds);
         assert!(matches!(&found.places[..], [Remains::Astray { .. }]) && !found.complete);
-        found.judge(&plant, &plant, &Thresholds::default());
+        found.judge(&plant, &plant, &thresholds);
         let because = |remark: &Remark| match remark {
             Remark::NotTheCause { because: Some(NoCause::Astray { astray }), .. } => astray.value,
             _ => 0.0,

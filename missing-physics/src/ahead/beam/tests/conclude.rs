@@ -56,6 +56,19 @@ fn an_effect_that_the_others_do_without_goes_and_one_that_they_need_stays() {
 }
 
 #[test]
+fn of_several_that_are_not_needed_the_one_with_the_most_parameters_goes_first() {
+    let plant = Plant::new(3, &[(WAVE, &[0.05])]);
+    // The push costs less.
+    let all = [(PUSH, &[1e-5][..]), (WAVE, &[0.05]), (TONE, &[2e-4, 5.0])];
+    let mut search = search(&plant, narrow());
+    let (kept, _) = search.prune(&climb(&plant, Vec::new()), node(&plant, &all));
+    assert_eq!(kept.effects(&plant), [WAVE]);
+    let names: Vec<usize> = search.decisions.iter().map(|d| d.candidate.len()).collect();
+    assert_eq!(names, [2, 1]);
+    assert_eq!(search.decisions[0].candidate, ["push", "wave"]);
+}
+
+#[test]
 fn an_effect_with_which_the_error_does_not_fall_beside_others_goes_whatever_it_gains() {
     let all = [(WAVE, &[0.05][..]), (BEAT, &[0.05]), (TONE, &[0.01, 5.0])];
     let plant = Plant::new(3, &all);
