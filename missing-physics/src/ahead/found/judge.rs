@@ -28,14 +28,9 @@ impl Found {
         thresholds: &Thresholds,
     ) {
         let top = self.rungs.last().unwrap_or(&self.base);
-        let within = |node: &Node| node.scale <= thresholds.complete * ahead.budget();
-        // What takes the errors to the sensors' does not fail to heed the input, whatever a balance of forces says: beside a
-        // second body that rings that says little.
-        let heeds = within(top) && !within(&self.base);
-        let astray = (!heeds).then(|| astray_in(top, family, ahead)).flatten();
-        let places = self.rival.iter().cloned().chain(astray);
-        self.places = places.chain(left_by(top, family, ahead, thresholds)).collect();
-        self.complete = within(top) && self.places.is_empty();
+        self.places = left_by(top, family, ahead, thresholds);
+        self.places.splice(0..0, self.rival.clone());
+        self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
     }
 
     /// Takes all names back where they are not the cause: the error does not fall with them, what is left is in a few wild
@@ -140,8 +135,7 @@ impl Found {
             lacking,
             because,
         });
-        let astray = astray_in(&self.base, family, ahead).into_iter();
-        self.places = astray.chain(left_by(&self.base, family, ahead, thresholds)).collect();
+        self.places = left_by(&self.base, family, ahead, thresholds);
         self.complete = false;
         self.rungs.clear();
         self.added.clear();
@@ -157,15 +151,6 @@ pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
     beyond(base) <= 0.0 || beyond(node) > LEFT * beyond(base)
 }
 
-/// Whether what every model has is far from where a balance of forces puts it.
-fn astray_in<F: ModelFamily + ?Sized>(
-    node: &Node,
-    family: &F,
-    ahead: &dyn Ahead,
-) -> Option<Remains> {
-    astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray })
-}
-
 /// What a model leaves, whether its errors show it or not.
 fn left_by<F: ModelFamily + ?Sized>(
     node: &Node,
@@ -174,7 +159,10 @@ fn left_by<F: ModelFamily + ?Sized>(
     thresholds: &Thresholds,
 ) -> Vec<Remains> {
     let shows = local::places(ahead, node, thresholds.local, &family.quantity().unit);
-    ahead.remains(&node.model, thresholds.complete).into_iter().chain(shows).collect()
+    let astray =
+        astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray });
+    let hidden = ahead.remains(&node.model, thresholds.complete);
+    astray.into_iter().chain(hidden).chain(shows).collect()
 }
 
 #[cfg(test)]
@@ -291,13 +279,9 @@ mod tests {
         for node in std::iter::once(&mut found.base).chain(&mut found.rungs) {
             node.model.values[0] = 5.0;
         }
-        // What takes the errors to the sensors' heeds the input.
         found.place(&plant, &plant, &Thresholds::default());
-        assert!(found.complete, "{:?}", found.places);
-        let thresholds = Thresholds { complete: 30.0, ..Thresholds::default() };
-        found.place(&plant, &plant, &thresholds);
         assert!(matches!(&found.places[..], [Remains::Astray { .. }]) && !found.complete);
-        found.judge(&plant, &plant, &thresholds);
+        found.judge(&plant, &plant, &Thresholds::default());
         let because = |remark: &Remark| match remark {
             Remark::NotTheCause { because: Some(NoCause::Astray { astray }), .. } => astray.value,
             _ => 0.0,
