@@ -85,6 +85,11 @@ impl FrictionFamily {
         Some(full.iter().map(|of| of[0]).collect())
     }
 
+    /// By how much the effect at a place of a model makes the force late, s; nothing where it is no such effect.
+    pub(super) fn lateness(&self, model: &Fitted, place: usize) -> Option<f64> {
+        self.effect(model.terms[place])?.lateness(&self.values_in_full(model, place)?)
+    }
+
     /// Index of a parameter of a term in a model's values.
     fn place(&self, model: &Fitted, term: &str, parameter: &str) -> Option<usize> {
         let position = model.terms.iter().position(|t| self.terms[*t].name == term)?;

@@ -75,7 +75,7 @@ impl FrictionFamily {
         let mut added = model.terms.iter().enumerate().filter(|(_, t)| !base.terms.contains(t));
         added.find_map(|(place, &term)| {
             let effect = self.effect(term)?;
-            let late = effect.lateness(&self.values_in_full(model, place)?)?;
+            let late = self.lateness(model, place)?;
             let refusal = Refusal::NotThatEffect {
                 effect: effect.about().name.to_owned(),
                 value: NamedValue {

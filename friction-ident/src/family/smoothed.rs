@@ -20,11 +20,7 @@ pub(super) type Filtered = [OnceLock<Option<Box<FrictionFamily>>>; CUTOFFS.len()
 impl FrictionFamily {
     /// A model without what makes the force late.
     pub(super) fn in_time(&self, model: &Fitted) -> Fitted {
-        let is_late = |place: usize| {
-            let values = self.values_in_full(model, place)?;
-            self.effect(model.terms[place])?.lateness(&values)
-        };
-        let late = (0..model.terms.len()).filter(|place| is_late(*place).is_some());
+        let late = (0..model.terms.len()).filter(|place| self.lateness(model, *place).is_some());
         late.fold(model.clone(), |left, place| left.without(self, model.terms[place]))
     }
 

@@ -314,14 +314,21 @@ impl<'a> Run<'a> {
     /// What was found, as a discovery; once more where noise of the input is in the way.
     fn told<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
         // Only what is told: another look must not stand for want of this one.
-        let judged = |mut sought: Sought<'_, F>| {
+        let judged = |sought: &Sought<'_, F>| {
+            let mut found = sought.found.clone();
             let ahead = sought.reading.asked(sought.on_part);
-            sought.found.judge_force(sought.reading.family, ahead, &self.thresholds);
-            self.reported(sought)
+            found.judge_force(sought.reading.family, ahead, &self.thresholds);
+            found
         };
-        let Some(reading) = self.without_noise(&sought) else { return judged(sought) };
+        let found = judged(&sought);
+        let Some(reading) = self.without_noise(&sought, found.complete) else {
+            return self.reported(Sought { found, ..sought });
+        };
         let before = sought.found.decisions;
-        self.looked(&reading, None, |again| judged(again.after(before)))
+        self.looked(&reading, None, |again| {
+            let again = again.after(before);
+            self.reported(Sought { found: judged(&again), ..again })
+        })
     }
 
     /// The reading in which noise of the input is smoothed away, no more of it than it takes for a model to predict better:
@@ -329,16 +336,15 @@ impl<'a> Run<'a> {
     fn without_noise<'f, F: ModelFamily + ?Sized>(
         &self,
         sought: &Sought<'f, F>,
+        nothing_is_left: bool,
     ) -> Option<Reading<'f, F>> {
         let Sought { reading, found, on_part } = sought;
-        let mut judged = found.clone();
-        judged.judge_force(reading.family, reading.asked(*on_part), &self.thresholds);
         let (top, effects) = found.top();
         let without = reading.family.without_lateness(&top.model);
         // What the base model has stays.
         let is_kept = found.base.model.terms.iter().all(|term| without.terms.contains(term));
         let late = top.model.terms.len() - without.terms.len();
-        if !is_kept || late == 0 && judged.complete {
+        if !is_kept || late == 0 && nothing_is_left {
             return None;
         }
         let mut before = f64::NEG_INFINITY;

@@ -41,7 +41,7 @@ impl FrictionFamily {
         let others = || {
             let place = model.terms.len().checked_sub(1)?;
             let last = model.terms[place];
-            let late = self.effect(last)?.lateness(&self.values_in_full(model, place)?)?;
+            let late = self.lateness(model, place)?;
             // A delay or a time constant alone; what has a second one is a form of that.
             let is_other = |term: &usize| {
                 let one = self.terms[*term].parameters.len() == 1;
