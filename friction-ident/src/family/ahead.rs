@@ -17,6 +17,8 @@ use crate::predictor::{Predictor, Wave};
 
 /// Samples of a search: more are thinned, and what is found is compared once more on all.
 const MOST_SAMPLES: usize = 8_000;
+/// So many times as many where a search names nothing on those.
+const MORE: usize = 4;
 /// Samples on which the trials of a term are ranked.
 const RANKED_ON: usize = 3_000;
 /// Length of the pieces of a search, s, and of those on which trials are ranked. What a contact holds where a piece begins is
@@ -68,6 +70,11 @@ impl OneAhead {
     /// The same of a part of the recording, where it is long: pieces spread over all of it.
     pub fn thinned(&self) -> Option<Self> {
         self.predictor.thinned(MOST_SAMPLES, LONG).map(Self::of)
+    }
+
+    /// More of it, where that names nothing.
+    pub fn less_thinned(&self) -> Option<Self> {
+        self.predictor.thinned(MORE * MOST_SAMPLES, LONG).map(Self::of)
     }
 
     fn of(predictor: Predictor) -> Self {

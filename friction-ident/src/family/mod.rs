@@ -36,6 +36,7 @@ mod views;
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use missing_physics::family::{Ahead, FullRate, Generic, OtherReading, sizes};
 use missing_physics::report::{Course, NamedError, Plot, Remark};
@@ -109,6 +110,7 @@ pub struct FrictionFamily {
     part: Option<Box<Self>>,
     ahead: Option<ahead::OneAhead>,
     thinned: Option<ahead::OneAhead>,
+    less_thinned: OnceLock<Option<ahead::OneAhead>>,
     top_speed: f64,
 }
 
@@ -185,6 +187,7 @@ impl FrictionFamily {
             given: None,
             ahead: None,
             thinned: None,
+            less_thinned: OnceLock::new(),
             top_speed: prepared.velocity.iter().fold(f64::MIN_POSITIVE, |top, v| top.max(v.abs())),
             prepared,
         };
@@ -661,6 +664,12 @@ impl ModelFamily for FrictionFamily {
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
         let ahead = self.thinned.as_ref()?;
+        Some(Box::new(ahead::View::new(self, ahead)))
+    }
+
+    fn ahead_in_longer_part(&self) -> Option<Box<dyn Ahead + '_>> {
+        let longer = || self.ahead.as_ref().and_then(ahead::OneAhead::less_thinned);
+        let ahead = self.less_thinned.get_or_init(longer).as_ref()?;
         Some(Box::new(ahead::View::new(self, ahead)))
     }
 

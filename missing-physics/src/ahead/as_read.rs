@@ -24,9 +24,10 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
         Some(Self { family, whole, part, residuals: false })
     }
 
-    /// The same, all of it searched.
-    pub(super) fn in_full(family: &'a F) -> Option<Self> {
-        Some(Self { family, whole: family.ahead()?, part: None, residuals: false })
+    /// The same, more of it searched.
+    pub(super) fn longer(family: &'a F) -> Option<Self> {
+        let (whole, part) = (family.ahead()?, family.ahead_in_longer_part());
+        Some(Self { family, whole, part, residuals: false })
     }
 
     /// That of a family that only gives residuals, whose noise the residual of `base` shows.
@@ -75,8 +76,8 @@ impl<F: ModelFamily + ?Sized> Other<'_, F> {
         Some(Other { reading: self.reading.coloured()?, ..*self })
     }
 
-    /// The same, all of it searched.
-    pub(super) fn in_full(&self) -> Option<Other<'_, F>> {
-        Some(Other { reading: Reading::in_full(self.reading.family)?, ..*self })
+    /// The same, more of it searched.
+    pub(super) fn longer(&self) -> Option<Other<'_, F>> {
+        Some(Other { reading: Reading::longer(self.reading.family)?, ..*self })
     }
 }

@@ -47,13 +47,15 @@ pub fn discover<F: ModelFamily + ?Sized>(
         Some(Other { reading: Reading::of(family)?, nats, decided })
     });
     run.looked(here, there.as_ref(), |sought| {
-        let Some((all, share)) = sought.unsearched(&thresholds) else { return run.told(sought) };
-        let in_pieces = Remark::SearchedInPieces { share };
-        if !leaves_time(settings.time_limit, started.elapsed(), share) {
+        let Some((longer, times)) = sought.unsearched(&thresholds) else {
+            return run.told(sought);
+        };
+        let in_pieces = Remark::SearchedInPieces { share: longer.searched().share() / times };
+        if !leaves_time(settings.time_limit, started.elapsed(), times) {
             return run.told(sought.but(in_pieces));
         }
-        let there = there.as_ref().and_then(Other::in_full);
-        run.looked(&all, there.as_ref(), |again| {
+        let there = there.as_ref().and_then(Other::longer);
+        run.looked(&longer, there.as_ref(), |again| {
             if again.found.stopped && again.found.added.is_empty() {
                 return run.told(sought.cut(in_pieces));
             }
@@ -385,9 +387,9 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Whether all of a recording can be searched within a limit after a search of this share of it took so long.
-fn leaves_time(limit: Option<Duration>, took: Duration, share: f64) -> bool {
-    limit.is_none_or(|limit| took + took.div_f64(share) <= limit)
+/// Whether so many times as much of a recording can be searched within a limit after a search took so long.
+fn leaves_time(limit: Option<Duration>, took: Duration, times: f64) -> bool {
+    limit.is_none_or(|limit| took + took.mul_f64(times) <= limit)
 }
 
 /// Whether a search was asked to end, or its time is up.
@@ -401,12 +403,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_of_a_recording_is_searched_where_the_limit_leaves_as_much_longer_as_there_is_more() {
-        let leaves = |limit: Option<u64>, took, share| {
-            leaves_time(limit.map(Duration::from_secs), Duration::from_secs(took), share)
+    fn more_of_a_recording_is_searched_where_the_limit_leaves_as_much_longer_as_there_is_more() {
+        let leaves = |limit: Option<u64>, took, times| {
+            leaves_time(limit.map(Duration::from_secs), Duration::from_secs(took), times)
         };
-        assert!(leaves(None, 100, 0.25) && leaves(Some(60), 12, 0.25));
-        assert!(!leaves(Some(60), 13, 0.25) && leaves(Some(60), 13, 0.5));
+        assert!(leaves(None, 100, 4.0) && leaves(Some(60), 12, 4.0));
+        assert!(!leaves(Some(60), 13, 4.0) && leaves(Some(60), 13, 2.0));
     }
 
     #[test]

@@ -11,8 +11,6 @@ use crate::task::Thresholds;
 
 /// Effects that a second look goes up to.
 pub(super) const PAIR: usize = 2;
-/// Share of a recording that a search must have seen for all of it to be searched.
-const LEAST_SHARE: f64 = 0.25;
 
 /// What was found in a reading.
 pub(super) struct Sought<'a, F: ModelFamily + ?Sized> {
@@ -30,20 +28,19 @@ impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
         self
     }
 
-    /// All of a recording, where a search on a part of it names nothing although something is missing, and that part as a share
-    /// of it: what shows in few places may not be among the pieces.
+    /// More of a recording of which a part was searched that names nothing: what shows in few places may not be among its
+    /// pieces, and what is small gains less there than chance may. And by how many times more it is.
     pub(super) fn unsearched(&self, thresholds: &Thresholds) -> Option<(Reading<'a, F>, f64)> {
         let Reading { family, whole, part, .. } = self.reading;
-        let share = part.as_ref().filter(|_| !self.on_part)?.share();
-        if share < LEAST_SHARE || self.found.stopped {
-            return None;
-        }
+        let part = part.as_ref().filter(|_| !self.on_part && !self.found.stopped)?;
         let mut found = self.found.clone();
         found.judge_force(*family, &**whole, thresholds);
-        if found.complete || !found.added.is_empty() {
+        if !found.added.is_empty() {
             return None;
         }
-        Some((Reading::in_full(*family)?, share))
+        let longer = Reading::longer(*family)?;
+        let times = longer.searched().share() / part.share();
+        Some((longer, times))
     }
 
     /// Whether so few effects leave nothing that no other look can do with less.

@@ -107,6 +107,8 @@ pub struct Plant {
     pub part: Option<Box<Plant>>,
     /// What is searched in its place, and as how much of it.
     pub pieces: Option<(Box<Plant>, f64)>,
+    /// And for more of it.
+    pub more_pieces: Option<(Box<Plant>, f64)>,
     /// The force that every model lacks.
     pub lacks: Option<Series>,
 }
@@ -198,6 +200,7 @@ impl Plant {
             leaps: Vec::new(),
             part: None,
             pieces: None,
+            more_pieces: None,
             lacks: None,
         }
     }
@@ -364,6 +367,10 @@ impl ModelFamily for Plant {
     }
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {
         let (pieces, share) = self.pieces.as_ref()?;
+        Some(Box::new(Borrowed(pieces, *share)))
+    }
+    fn ahead_in_longer_part(&self) -> Option<Box<dyn Ahead + '_>> {
+        let (pieces, share) = self.more_pieces.as_ref()?;
         Some(Box::new(Borrowed(pieces, *share)))
     }
 }

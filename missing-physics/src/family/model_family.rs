@@ -151,6 +151,11 @@ pub trait ModelFamily: Sync {
         None
     }
 
+    /// More of it, for a search that named nothing on those parts; nothing where all of it is not much more.
+    fn ahead_in_longer_part(&self) -> Option<Box<dyn Ahead + '_>> {
+        None
+    }
+
     /// Whether practically every system of this kind has the term. Where a base model lacks such terms, they are named
     /// in the place of an effect that does no more than they do.
     fn is_usual(&self, _term: usize) -> bool {

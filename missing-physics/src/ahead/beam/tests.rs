@@ -181,18 +181,21 @@ fn what_a_part_of_the_recording_showed_is_taken_back_where_the_whole_does_not() 
 }
 
 #[test]
-fn what_pieces_of_the_recording_do_not_show_is_looked_for_in_all_of_it() {
-    let named = |hidden: &[(usize, &[f64])], share: f64| {
+fn what_pieces_of_the_recording_do_not_show_is_looked_for_in_more_of_it() {
+    let named = |hidden: &[(usize, &[f64])], more: Option<&[(usize, &[f64])]>| {
         let mut plant = Plant::new(5, hidden);
-        plant.pieces = Some((Box::new(Plant::new(6, &[])), share));
+        plant.pieces = Some((Box::new(Plant::new(6, &[])), 0.1));
+        plant.more_pieces = more.map(|shown| (Box::new(Plant::new(7, shown)), 0.4));
         let discovery = discover(&plant, &settings(), &mut ()).unwrap();
         (discovery.verdict, discovery.added)
     };
     let wave: &[(usize, &[f64])] = &[(WAVE, &[0.05])];
-    assert_eq!(named(wave, 0.3), (Verdict::EffectsFound, vec!["wave".to_owned()]));
-    // Of a very long recording it would take too long.
-    assert_eq!(named(wave, 0.2), (Verdict::Unexplained, Vec::new()));
-    assert_eq!(named(&[], 0.3), (Verdict::NothingMissing, Vec::new()));
+    let found = (Verdict::EffectsFound, vec!["wave".to_owned()]);
+    assert_eq!(named(wave, None), found);
+    assert_eq!(named(wave, Some(wave)), found);
+    // All of a very long recording would take too long.
+    assert_eq!(named(wave, Some(&[])), (Verdict::Unexplained, Vec::new()));
+    assert_eq!(named(&[], None), (Verdict::NothingMissing, Vec::new()));
 }
 
 #[test]
