@@ -47,10 +47,10 @@ pub fn discover<F: ModelFamily + ?Sized>(
         Some(Other { reading: Reading::of(family)?, nats, decided })
     });
     run.looked(here, there.as_ref(), |sought| {
-        let Some((longer, times)) = sought.unsearched(&thresholds) else {
-            return run.told(sought);
-        };
-        let in_pieces = Remark::SearchedInPieces { share: longer.searched().share() / times };
+        let longer = sought.searched_in_vain(&thresholds).zip(Reading::longer(here.family));
+        let Some((share, longer)) = longer else { return run.told(sought) };
+        let in_pieces = Remark::SearchedInPieces { share };
+        let times = longer.searched().share() / share;
         if !leaves_time(settings.time_limit, started.elapsed(), times) {
             return run.told(sought.but(in_pieces));
         }
@@ -136,11 +136,15 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
     /// What is found in the reading that stands, as far as it was searched.
     fn found(self) -> (&'a Reading<'a, F>, Found) {
         let Self { here, there, thresholds, stop, .. } = self;
+        let reading = here.reading;
         let Some((there, nats)) = there else {
-            return (here.reading, here.search.finish(here.climb));
+            return (reading, here.search.finish(here.climb));
         };
         let better = thresholds.in_part(there.reading.searched().share()).better;
-        let turned = reading::nats(there.climb.top(), here.climb.top(), better) > nats;
+        let preferred = |there: (&Node, usize), here: (&Node, usize)| {
+            reading::nats(reading.searched(), there, here, better)
+        };
+        let turned = preferred(there.climb.top(), here.climb.top()) > nats;
         let (mut first, second) = if turned { (there, here) } else { (here, there) };
         let other = second.reading;
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
@@ -150,7 +154,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         // What is found there, where that is to be preferred.
         let there = |second: Pursuit<'a, F>, led: Node, top: (&Node, usize)| {
             let there = second.search.finish_led(second.climb, led);
-            Some(there).filter(|there| reading::nats(there.top(), top, better) > 0.0)
+            Some(there).filter(|there| preferred(there.top(), top) > 0.0)
         };
         // To look at a set more closely takes as long as the way to it.
         let grown = first.search.grown(&mut first.climb);
@@ -361,7 +365,7 @@ impl<'a> Run<'a> {
             let setting = best_setting(ahead, &without);
             let node = fitter.refit(without.clone(), setting, IN_FULL);
             let better = self.thresholds.in_part(ahead.share()).better;
-            let nats = reading::nats((&node, effects - late), (top, effects), better);
+            let nats = reading::nats(ahead, (&node, effects - late), (top, effects), better);
             if nats > if late == 0 { better } else { 0.0 } {
                 return Some(smoothed);
             }

@@ -4,7 +4,11 @@
 //! held taken as sampled, or the other way round) takes an effect of its own to make up for it, so that fewer effects
 //! count for it where both predict alike.
 
+use std::cmp::Ordering;
+
+use super::Ahead;
 use super::fit::Fitter;
+use super::foretold::is_foretold;
 use super::node::Node;
 use crate::family::ModelFamily;
 
@@ -12,14 +16,17 @@ use crate::family::ModelFamily;
 const STEPS: usize = 6;
 
 /// By how many nats the best model of one reading is to be preferred to that of the other, each with its number of
-/// effects: one with fewer is allowed to lose `better`.
-pub fn nats(here: (&Node, usize), there: (&Node, usize), better: f64) -> f64 {
+/// effects, as `ahead` sees them: one with fewer is allowed to lose `better`, and what its errors foretell themselves.
+pub fn nats(ahead: &dyn Ahead, here: (&Node, usize), there: (&Node, usize), better: f64) -> f64 {
     let ((here, effects), (there, others)) = (here, there);
     let nats = gain(there, here);
+    let is_foretold = |from, to, nats| is_foretold(ahead, from, to, nats, better);
     match effects.cmp(&others) {
-        std::cmp::Ordering::Less => nats + better,
-        std::cmp::Ordering::Equal => nats,
-        std::cmp::Ordering::Greater => nats - better,
+        Ordering::Less if is_foretold(here, there, -nats) => better,
+        Ordering::Less => nats + better,
+        Ordering::Equal => nats,
+        Ordering::Greater if is_foretold(there, here, nats) => -better,
+        Ordering::Greater => nats - better,
     }
 }
 
@@ -67,12 +74,12 @@ mod tests {
     fn the_better_prediction_is_preferred_and_one_effect_less_may_cost_what_one_must_gain() {
         let plant = Plant::new(1, &[(WAVE, &[0.05])]);
         let (good, poor) = (model(&plant, &[(WAVE, &[0.05])]), model(&plant, &[]));
-        let alike = nats((&good, 1), (&poor, 1), 20.0);
+        let alike = nats(&plant, (&good, 1), (&poor, 1), 20.0);
         assert!(alike > 20.0, "{alike}");
-        assert_eq!(nats((&poor, 1), (&good, 1), 20.0), -gain(&good, &poor).abs());
-        assert_eq!(nats((&good, 0), (&poor, 1), 20.0), alike + 20.0);
-        assert_eq!(nats((&good, 2), (&poor, 1), 20.0), alike - 20.0);
-        assert_eq!(nats((&good, 1), (&good, 2), 20.0), 20.0);
+        assert_eq!(nats(&plant, (&poor, 1), (&good, 1), 20.0), -gain(&good, &poor).abs());
+        assert_eq!(nats(&plant, (&good, 0), (&poor, 1), 20.0), alike + 20.0);
+        assert_eq!(nats(&plant, (&good, 2), (&poor, 1), 20.0), alike - 20.0);
+        assert_eq!(nats(&plant, (&good, 1), (&good, 2), 20.0), 20.0);
     }
 
     #[test]

@@ -28,19 +28,14 @@ impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
         self
     }
 
-    /// More of a recording of which a part was searched that names nothing: what shows in few places may not be among its
-    /// pieces, and what is small gains less there than chance may. And by how many times more it is.
-    pub(super) fn unsearched(&self, thresholds: &Thresholds) -> Option<(Reading<'a, F>, f64)> {
+    /// What share of a recording was searched where that names nothing: what shows in few places may not be among its pieces,
+    /// and what is small gains less there than chance may.
+    pub(super) fn searched_in_vain(&self, thresholds: &Thresholds) -> Option<f64> {
         let Reading { family, whole, part, .. } = self.reading;
         let part = part.as_ref().filter(|_| !self.on_part && !self.found.stopped)?;
         let mut found = self.found.clone();
         found.judge_force(*family, &**whole, thresholds);
-        if !found.added.is_empty() {
-            return None;
-        }
-        let longer = Reading::longer(*family)?;
-        let times = longer.searched().share() / part.share();
-        Some((longer, times))
+        found.added.is_empty().then(|| part.share())
     }
 
     /// Whether so few effects leave nothing that no other look can do with less.
