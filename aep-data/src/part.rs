@@ -1,6 +1,9 @@
 //! A part of a recording: between two times, every so many samples.
 
-use missing_physics::{Channel, Recording, RecordingError};
+use missing_physics::{Channel, Hold, Recording, RecordingError};
+
+/// What acts between samples.
+const INPUT: &str = "force";
 
 /// Which samples are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -9,7 +12,8 @@ pub struct Part {
     pub from: Option<f64>,
     /// Last time, s.
     pub to: Option<f64>,
-    /// Every how many samples one is used; the others are skipped, not averaged.
+    /// Every how many samples one is used: of the force its mean until the next one that is, as the plant heeds all of it; the
+    /// others are skipped.
     pub every: Option<usize>,
 }
 
@@ -27,21 +31,45 @@ impl Part {
 pub fn part(recording: &Recording, part: &Part) -> Result<Recording, RecordingError> {
     let (from, to) = (part.from.unwrap_or(f64::NEG_INFINITY), part.to.unwrap_or(f64::INFINITY));
     let every = part.every.unwrap_or(1).max(1);
-    let (mut kept, mut segment) = (Vec::new(), Vec::new());
+    let (mut kept, mut segment, mut until) = (Vec::new(), Vec::new(), Vec::new());
     for (number, piece) in (0..).zip(recording.segments()) {
         let within = piece.clone().filter(|k| (from..=to).contains(&recording.time()[*k]));
+        let last = within.clone().last();
         let samples: Vec<usize> = within.step_by(every).collect();
         if samples.len() > 1 {
             segment.extend(std::iter::repeat_n(number, samples.len()));
+            until.extend(samples[1..].iter().copied().chain(last));
             kept.extend(samples);
         }
     }
     let pick = |values: &[f64]| -> Vec<f64> { kept.iter().map(|k| values[*k]).collect() };
-    let channels = recording.channels().iter();
-    let channels = channels.map(|c| Channel::new(&c.name, &c.unit, pick(&c.values))).collect();
+    let channels = recording.channels().iter().map(|c| {
+        let values = if every > 1 && c.name == INPUT {
+            kept.iter().zip(&until).map(|(k, next)| mean(recording, &c.values, *k, *next)).collect()
+        } else {
+            pick(&c.values)
+        };
+        Channel::new(&c.name, &c.unit, values)
+    });
+    let channels = channels.collect();
     let left =
         Recording::with_segments(recording.name(), pick(recording.time()), channels, segment)?;
-    Ok(left.with_hold_of(recording))
+    // A mean is what is held instead.
+    let is_sampled = recording.known_hold() == Some(Hold::Sampled);
+    Ok(if every > 1 && is_sampled {
+        left.with_hold(Hold::ZeroOrder)
+    } else {
+        left.with_hold_of(recording)
+    })
+}
+
+/// Mean of an input from one sample to another.
+fn mean(recording: &Recording, values: &[f64], from: usize, to: usize) -> f64 {
+    let time = recording.time();
+    let is_sampled = recording.known_hold() == Some(Hold::Sampled);
+    let acts = |k: usize| if is_sampled { 0.5 * (values[k] + values[k + 1]) } else { values[k] };
+    let impulse: f64 = (from..to).map(|k| acts(k) * (time[k + 1] - time[k])).sum();
+    if to > from { impulse / (time[to] - time[from]) } else { values[from] }
 }
 
 #[cfg(test)]
@@ -65,9 +93,24 @@ mod tests {
         assert_eq!(left.segments().len(), 2);
         assert_eq!((left.time()[0], left.len()), (0.5, 5 + 16));
         assert!((left.interval() - 0.02).abs() < 1e-12);
-        assert_eq!(left.channel("force").unwrap().values, left.time());
+        // The force rises with time and was held from each sample to the next.
+        let means = left.time().iter().map(|t| t + 0.005);
+        let close = |(force, mean): (&f64, f64)| (force - mean).abs() < 1e-12;
+        let force = &left.channel("force").unwrap().values;
+        assert!(force.iter().zip(means).take(4).all(close), "{force:?}");
+        // No sample follows the last one of a piece.
+        assert_eq!((force[4], force[20]), (0.58, 0.9));
         assert_eq!(left.known_hold(), Some(Hold::ZeroOrder));
         assert_eq!(part(&recording(), &Part::default()).unwrap(), recording());
+    }
+
+    #[test]
+    fn of_a_force_that_was_sampled_the_mean_is_held() {
+        let every = Part { every: Some(4), ..Part::default() };
+        let left = part(&recording().with_hold(Hold::Sampled), &every).unwrap();
+        let force = &left.channel("force").unwrap().values;
+        assert!((force[1] - 0.06).abs() < 1e-12, "{force:?}");
+        assert_eq!(left.known_hold(), Some(Hold::ZeroOrder));
     }
 
     #[test]

@@ -93,7 +93,7 @@ pub struct MappingArgs {
     /// Last time that is used, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     to: Option<f64>,
-    /// Use every N-th sample only
+    /// Use every N-th sample only, the force averaged until the next one
     #[arg(long, value_name = "N")]
     every: Option<NonZeroUsize>,
     /// Sampling interval in s, for files without a time

@@ -56,6 +56,8 @@ pub struct Parameter {
     pub default: f64,
     /// What of a recording it is, where a comparison takes it from there.
     pub extent: Option<Extent>,
+    /// Whether a rest shows it, however slow a motion can be seen.
+    pub at_rest: bool,
 }
 
 /// Where the stroke begins and ends: of a recording that of its own.
@@ -78,7 +80,18 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Amplitude, Scale::Linear);
-        Self { name, meaning, quantity, role, low: -high, high, scale, default, extent: None }
+        Self {
+            name,
+            meaning,
+            quantity,
+            role,
+            low: -high,
+            high,
+            scale,
+            default,
+            extent: None,
+            at_rest: false,
+        }
     }
 
     /// An amplitude that physics keeps at or above 0.
@@ -90,7 +103,18 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Amplitude, Scale::Linear);
-        Self { name, meaning, quantity, role, low: 0.0, high, scale, default, extent: None }
+        Self {
+            name,
+            meaning,
+            quantity,
+            role,
+            low: 0.0,
+            high,
+            scale,
+            default,
+            extent: None,
+            at_rest: false,
+        }
     }
 
     /// A positive shape parameter, searched on a logarithmic scale.
@@ -102,7 +126,18 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Shape, Scale::Log);
-        Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
+        Self {
+            name,
+            meaning,
+            quantity,
+            role,
+            low,
+            high,
+            scale,
+            default,
+            extent: None,
+            at_rest: false,
+        }
     }
 
     /// A parameter that is not fitted.
@@ -114,13 +149,31 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Fixed, Scale::Linear);
-        Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
+        Self {
+            name,
+            meaning,
+            quantity,
+            role,
+            low,
+            high,
+            scale,
+            default,
+            extent: None,
+            at_rest: false,
+        }
     }
 
     /// The same, taken from a recording where it is compared with one.
     #[must_use]
     pub const fn taken_from(mut self, extent: Extent) -> Self {
         self.extent = Some(extent);
+        self
+    }
+
+    /// The same, of what happens at rest, too.
+    #[must_use]
+    pub const fn shown_at_rest(mut self) -> Self {
+        self.at_rest = true;
         self
     }
 
