@@ -56,8 +56,6 @@ pub struct Parameter {
     pub default: f64,
     /// What of a recording it is, where a comparison takes it from there.
     pub extent: Option<Extent>,
-    /// Whether a rest shows it, however slow a motion can be seen.
-    pub at_rest: bool,
 }
 
 /// Where the stroke begins and ends: of a recording that of its own.
@@ -80,18 +78,7 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Amplitude, Scale::Linear);
-        Self {
-            name,
-            meaning,
-            quantity,
-            role,
-            low: -high,
-            high,
-            scale,
-            default,
-            extent: None,
-            at_rest: false,
-        }
+        Self { name, meaning, quantity, role, low: -high, high, scale, default, extent: None }
     }
 
     /// An amplitude that physics keeps at or above 0.
@@ -103,18 +90,7 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Amplitude, Scale::Linear);
-        Self {
-            name,
-            meaning,
-            quantity,
-            role,
-            low: 0.0,
-            high,
-            scale,
-            default,
-            extent: None,
-            at_rest: false,
-        }
+        Self { name, meaning, quantity, role, low: 0.0, high, scale, default, extent: None }
     }
 
     /// A positive shape parameter, searched on a logarithmic scale.
@@ -126,18 +102,7 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Shape, Scale::Log);
-        Self {
-            name,
-            meaning,
-            quantity,
-            role,
-            low,
-            high,
-            scale,
-            default,
-            extent: None,
-            at_rest: false,
-        }
+        Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
     }
 
     /// A parameter that is not fitted.
@@ -149,31 +114,13 @@ impl Parameter {
         default: f64,
     ) -> Self {
         let (role, scale) = (ParameterRole::Fixed, Scale::Linear);
-        Self {
-            name,
-            meaning,
-            quantity,
-            role,
-            low,
-            high,
-            scale,
-            default,
-            extent: None,
-            at_rest: false,
-        }
+        Self { name, meaning, quantity, role, low, high, scale, default, extent: None }
     }
 
     /// The same, taken from a recording where it is compared with one.
     #[must_use]
     pub const fn taken_from(mut self, extent: Extent) -> Self {
         self.extent = Some(extent);
-        self
-    }
-
-    /// The same, of what happens at rest, too.
-    #[must_use]
-    pub const fn shown_at_rest(mut self) -> Self {
-        self.at_rest = true;
         self
     }
 

@@ -56,7 +56,6 @@ static GAIN: About = About {
         scale: Scale::Linear,
         default: 0.02,
         extent: None,
-        at_rest: false,
     }],
     slots: &[Slot::SmoothForce],
     shows: "a residual proportional to the given force",
@@ -78,7 +77,6 @@ static FORCE: About = About {
             scale: Scale::Linear,
             default: 1.0,
             extent: None,
-            at_rest: false,
         },
         Parameter::fixed(
             "smoothing",

@@ -247,7 +247,6 @@ fn parameter(name: &str, p: &FileParameter) -> Result<Parameter, FormulaError> {
         scale: if p.linear || p.low <= 0.0 { Scale::Linear } else { Scale::Log },
         default: p.default,
         extent: p.from,
-        at_rest: false,
     })
 }
 

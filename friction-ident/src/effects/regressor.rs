@@ -48,7 +48,6 @@ fn about(name: &'static str, most: f64, typical: f64) -> About {
             scale: Scale::Linear,
             default: typical,
             extent: None,
-            at_rest: false,
         }]),
         slots: &[Slot::SmoothForce],
         shows: "a residual in proportion to the regressor",

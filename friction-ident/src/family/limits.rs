@@ -192,8 +192,6 @@ impl Limits {
     fn shape(&self, parameter: &effects::Parameter) -> (f64, f64, f64) {
         let (low, high) = parameter.range(self.axis);
         let (from, to) = match parameter.quantity {
-            Quantity::Velocity if parameter.at_rest => (low, 0.5 * self.speed.most),
-            Quantity::Length if parameter.at_rest => (low, self.stroke),
             Quantity::Velocity => (0.5 * self.rest_speed, 0.5 * self.speed.most),
             Quantity::Length => (self.position_noise, self.stroke),
             Quantity::Stiffness => (

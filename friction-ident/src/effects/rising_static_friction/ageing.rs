@@ -30,17 +30,14 @@ static ABOUT: About = About {
             // The size of asperities; over a longer way it would be any memory of a first order.
             (1e-7, 1e-4),
             1e-5,
-        )
-        .shown_at_rest(),
+        ),
         Parameter::shape(
             "v_c",
             "velocity above which hardly anything is left",
             Quantity::Velocity,
             (1e-6, 10.0),
             1e-3,
-        )
-        // How soon contacts begin to age is `D_c/v_c`.
-        .shown_at_rest(),
+        ),
     ],
     slots: &[Slot::Memory],
     shows: "breakaway peak against the logarithm of the dwell time; friction against the logarithm of a steady speed; after a \
