@@ -131,7 +131,7 @@ impl<'a> View<'a> {
         let pieces = self.ahead.instants.chunk_by(|a, b| a.1 == b.1);
         let pieces: Vec<Vec<f64>> =
             pieces.map(|piece| errors.by_ref().take(piece.len()).collect()).collect();
-        let spectrum = Periodogram::new(&pieces, self.family.recording.interval());
+        let spectrum = Periodogram::new(&pieces, self.ahead.predictor.interval());
         let lines: Vec<_> = spectrum.iter().flat_map(|s| s.peaks(LINE)).take(LINES).collect();
         let width = LINE_WIDTH / self.family.extent_of(law);
         let beside = move |f: f64| (-BESIDE..=BESIDE).map(move |k| f + f64::from(k) * width);
@@ -198,7 +198,7 @@ impl Ahead for View<'_> {
 
     fn share(&self) -> f64 {
         let all = self.family.ahead.as_ref().unwrap_or(self.ahead);
-        self.ahead.instants.len() as f64 / all.instants.len() as f64
+        self.ahead.predictor.duration() / all.predictor.duration()
     }
 
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {

@@ -39,6 +39,8 @@ use strips::{Strip, teams};
 /// Longest step of the simulation, s, and that with a second body.
 const STEP: f64 = 1.25e-3;
 const STEP_OF_TWO: f64 = 8e-4;
+/// Samples of a search that follow each other faster are averaged: a step is no shorter.
+const APART: f64 = 1e-3;
 /// Fewest steps from sample to sample where the force comes late: a step heeds its mean alone, and a delay of part of a
 /// sample is when within the sample it acts.
 const LATE_STEPS: f64 = 2.0;
@@ -191,9 +193,75 @@ impl Predictor {
         })
     }
 
-    /// The same on pieces of about `length` s, spread over the recording, that have `most` samples together; nothing
-    /// where the recording has no more.
+    /// The same on pieces of about `length` s, spread over the recording, that have `most` samples together, of which none are
+    /// needed that follow each other faster than a step; nothing where the recording has no more.
     pub fn thinned(&self, most: usize, length: f64) -> Option<Self> {
+        let all: usize = self.segments.iter().map(Range::len).sum();
+        if all <= most + most / 4 {
+            return None;
+        }
+        let coarser = self.coarser();
+        let thinned = coarser.as_ref().unwrap_or(self).pieces(most, length);
+        thinned.or(coarser)
+    }
+
+    /// The same with every so many samples only, the force averaged in between; nothing where no two of them lie within
+    /// [`APART`].
+    fn coarser(&self) -> Option<Self> {
+        let every = (APART / self.interval * (1.0 + 1e-6)) as usize;
+        if every < 2 {
+            return None;
+        }
+        let mut segments = Vec::new();
+        let (mut kept, mut force) = (Vec::new(), Vec::new());
+        for segment in &self.segments {
+            let start = kept.len();
+            for k in segment.clone().step_by(every) {
+                kept.push(k);
+                force.push(self.mean_force(k, (k + every).min(segment.end - 1)));
+            }
+            segments.push(start..kept.len());
+        }
+        // A white force is as much less in a mean.
+        let less = (every as f64).sqrt();
+        let Noise { position, force: noise, force_at_most } = self.noise;
+        let noise = Noise { position, force: noise / less, force_at_most: force_at_most / less };
+        let at = |values: &[f64]| -> Vec<f64> { kept.iter().map(|k| values[*k]).collect() };
+        let mut coarser = Self {
+            origin: kept.iter().map(|k| self.origin[*k]).collect(),
+            time: at(&self.time),
+            position: at(&self.position),
+            bends: vec![0.0; kept.len()],
+            hold: Hold::ZeroOrder,
+            stale: kept.iter().map(|k| self.stale[*k]).collect(),
+            came: kept.iter().map(|k| self.came[*k]).collect(),
+            counted: Vec::new(),
+            teams: Vec::new(),
+            gains: Vec::new(),
+            ladder: self.ladder.iter().map(|force| force / less).collect(),
+            interval: self.interval * every as f64,
+            force,
+            segments,
+            noise,
+            ..*self
+        };
+        coarser.arrange();
+        coarser.tune(self.plant.0, self.plant.1);
+        Some(coarser)
+    }
+
+    /// Mean of the force from one sample to another.
+    fn mean_force(&self, from: usize, to: usize) -> f64 {
+        let acts = |k: usize| match self.hold {
+            Hold::Sampled => 0.5 * (self.force[k] + self.force[k + 1]),
+            Hold::ZeroOrder => self.force[k],
+        };
+        let impulse: f64 = (from..to).map(|k| acts(k) * (self.time[k + 1] - self.time[k])).sum();
+        if to > from { impulse / (self.time[to] - self.time[from]) } else { self.force[from] }
+    }
+
+    /// The same on pieces; see [`Self::thinned`].
+    fn pieces(&self, most: usize, length: f64) -> Option<Self> {
         let all: usize = self.segments.iter().map(Range::len).sum();
         if all <= most + most / 4 {
             return None;
@@ -230,6 +298,16 @@ impl Predictor {
         thinned.arrange();
         thinned.tune(self.plant.0, self.plant.1);
         Some(thinned)
+    }
+
+    /// Time that the samples that count stand for, s.
+    pub fn duration(&self) -> f64 {
+        self.counted.len() as f64 * self.interval
+    }
+
+    /// Typical time from sample to sample, s.
+    pub fn interval(&self) -> f64 {
+        self.interval
     }
 
     /// Instants of the samples that count, s, and the number of the piece that each belongs to.

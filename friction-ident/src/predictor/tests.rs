@@ -41,7 +41,18 @@ fn commanded(
     sensors: Sensors,
     command: impl Fn(f64) -> f64,
 ) -> Recording {
-    let time: Vec<f64> = (0..SAMPLES).map(|k| f64::from(k) * 1e-3).collect();
+    commanded_every(1e-3, model, hold, sensors, command)
+}
+
+/// The same with so many seconds between two samples.
+fn commanded_every(
+    interval: f64,
+    model: &Model,
+    hold: Hold,
+    sensors: Sensors,
+    command: impl Fn(f64) -> f64,
+) -> Recording {
+    let time: Vec<f64> = (0..SAMPLES).map(|k| f64::from(k) * interval).collect();
     let force: Vec<f64> = time.iter().map(|t| command(*t)).collect();
     let input = Input::new(&time, &force, hold).with_max_step(5e-5);
     let out = simulate(model, &input, &Start::at(0.0, 0.0)).unwrap();
@@ -274,6 +285,45 @@ fn a_part_of_a_recording_has_as_many_samples_as_asked_and_all_of_its_places() {
     }
     let ratio = rms(&best(&part, &table()).1) / rms(&best(&whole, &table()).1);
     assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
+}
+
+#[test]
+fn of_samples_that_follow_each_other_fast_the_force_is_averaged() {
+    for hold in [Hold::ZeroOrder, Hold::Sampled] {
+        let data = commanded_every(2.5e-4, &table(), hold, QUIET, fast);
+        let whole = predictor(&data);
+        let part = whole.thinned(2000, 1.0).unwrap();
+        assert!((part.interval() - 1e-3).abs() < 1e-12 && part.time.len() == 2000);
+        assert!((part.duration() / whole.duration() - 1.0).abs() < 0.01);
+        for (k, (time, _)) in part.counted().zip(part.instants()) {
+            assert_eq!(data.time()[k], time);
+        }
+        // The true model errs by the counts, as it does from one sample to the next; with the force of every fourth sample alone
+        // it would err by more.
+        let errs = |predictor: &Predictor| {
+            let (setting, errors) = best(predictor, &table());
+            rms(&errors) / predictor.expected(setting)
+        };
+        let ratio = errs(&part) / errs(&whole);
+        assert!((0.9..1.1).contains(&ratio), "{hold:?} {ratio}");
+        let mut skipping = part.clone();
+        skipping.force = skipping.origin.iter().map(|k| whole.force[*k]).collect();
+        let [skipping, part] = [&skipping, &part].map(|p| rms(&best(p, &table()).1));
+        assert!(skipping > 1.5 * part, "{hold:?} {skipping} {part}");
+    }
+}
+
+#[test]
+fn a_noise_of_the_force_suits_the_same_setting_where_it_is_averaged() {
+    let sensors = Sensors { force: 2.0, ..QUIET };
+    let whole = predictor(&commanded_every(5e-4, &table(), Hold::ZeroOrder, sensors, |t| {
+        24.0 * (5.0 * t).sin() + 12.0 * (13.0 * t + 1.0).sin()
+    }));
+    let part = whole.thinned(4000, 1.0).unwrap();
+    assert!((part.interval() - 1e-3).abs() < 1e-12);
+    let (there, here) = (best(&whole, &table()).0, best(&part, &table()).0);
+    assert!(here.abs_diff(there) <= 1, "{here} {there}");
+    assert!((part.noise.force_at_most / whole.noise.force_at_most - 0.5_f64.sqrt()).abs() < 1e-9);
 }
 
 #[test]

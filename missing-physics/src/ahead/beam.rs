@@ -56,7 +56,7 @@ type Costs = Vec<(usize, Difference, Node)>;
 
 /// How far a search has come.
 pub struct Climb {
-    base: Node,
+    pub(super) base: Node,
     /// Sets of effects by their number, the best first.
     nodes: Vec<Vec<Node>>,
     ranking: Vec<Ranked>,

@@ -11,6 +11,7 @@ use super::fit::{Fitter, best_setting};
 use super::found::{Found, IN_FULL};
 use super::node::Node;
 use super::reading;
+use super::refused::as_read;
 use super::report::Report;
 use super::sought::{PAIR, Sought};
 use crate::family::{Fitted, ModelFamily, OtherReading};
@@ -74,6 +75,14 @@ struct Pursuit<'a, F: ModelFamily + ?Sized> {
 impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
     fn is_complete(&self) -> bool {
         self.search.is_complete(self.climb.top().0)
+    }
+
+    /// Whether the best effect may do no more than the other reading.
+    fn is_of_reading(&self) -> bool {
+        let Reading { family, .. } = *self.reading;
+        let (top, effects) = self.climb.top();
+        let as_read = || as_read(family, self.reading.searched(), &self.climb.base, top);
+        effects > 0 && as_read().is_some()
     }
 
     /// Whether the best model with an effect, which leaves more than the sensors make, predicts better in another reading.
@@ -144,7 +153,11 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         let preferred = |there: (&Node, usize), here: (&Node, usize)| {
             reading::nats(reading.searched(), there, here, better)
         };
-        let turned = preferred(there.climb.top(), here.climb.top()) > nats;
+        let turned = match (here.is_of_reading(), there.is_of_reading()) {
+            (false, true) => false,
+            (true, false) => true,
+            _ => preferred(there.climb.top(), here.climb.top()) > nats,
+        };
         let (mut first, second) = if turned { (there, here) } else { (here, there) };
         let other = second.reading;
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);

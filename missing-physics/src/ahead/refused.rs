@@ -50,10 +50,29 @@ pub fn not_told<F: ModelFamily + ?Sized>(
     base: &Node,
     node: &Node,
 ) -> Option<(usize, Refusal)> {
-    let as_read = || ahead.of_reading(&node.model, &base.model);
     refused(family, ahead, base, node)
-        .or_else(as_read)
+        .or_else(|| as_read(family, ahead, base, node))
         .or_else(|| unknown(family, ahead, base, node))
+}
+
+/// The effect of a model that may do no more than another way to read the recording would, if any: the data leave how late it
+/// makes the input open down to the low ends of its parameters' intervals.
+pub fn as_read<F: ModelFamily + ?Sized>(
+    family: &F,
+    ahead: &dyn Ahead,
+    base: &Node,
+    node: &Node,
+) -> Option<(usize, Refusal)> {
+    let intervals = intervals::of((family, ahead), node);
+    let mut model = node.model.clone();
+    let parameters: Vec<_> = node.model.parameters(family).collect();
+    for (value, (term, parameter)) in model.values.iter_mut().zip(parameters) {
+        let is = &intervals[&term.key(parameter)];
+        if is.identifiable {
+            *value = is.low;
+        }
+    }
+    ahead.of_reading(&model, &base.model)
 }
 
 /// The effect of a model of which the data do not tell what makes it that effect, if any: a length, a speed or a time that

@@ -7,7 +7,7 @@ use crate::ahead::Ahead;
 use crate::ahead::compare::Comparison;
 use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
-use crate::ahead::refused::{refused, unknown};
+use crate::ahead::refused::{as_read, refused, unknown};
 use crate::family::{Fitted, ModelFamily};
 use crate::report::{Refusal, Remains, Remark};
 use crate::task::Thresholds;
@@ -66,7 +66,8 @@ impl Found {
             }
             // All of the recording may take an effect to where it is none.
             let place = |term: usize| self.added.iter().position(|t| main(*t) == main(term));
-            let refused = refused(family, ahead, &self.base, top);
+            let refused = refused(family, ahead, &self.base, top)
+                .or_else(|| as_read(family, ahead, &self.base, top));
             let mut goes = refused.and_then(|(term, refusal)| Some((place(term)?, Some(refusal))));
             if goes.is_none() {
                 let last = self.added.len() - 1;
