@@ -34,7 +34,7 @@ pub fn part(recording: &Recording, part: &Part) -> Result<Recording, RecordingEr
     let (mut kept, mut segment, mut until) = (Vec::new(), Vec::new(), Vec::new());
     for (number, piece) in (0..).zip(recording.segments()) {
         let within = piece.clone().filter(|k| (from..=to).contains(&recording.time()[*k]));
-        let last = within.clone().last();
+        let last = within.clone().next_back();
         let samples: Vec<usize> = within.step_by(every).collect();
         if samples.len() > 1 {
             segment.extend(std::iter::repeat_n(number, samples.len()));

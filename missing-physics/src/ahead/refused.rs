@@ -91,27 +91,23 @@ pub fn unknown<F: ModelFamily + ?Sized>(
     let intervals = intervals::of((family, ahead), node);
     added.into_iter().find_map(|index| {
         let term = &family.terms()[index];
-        let lost = term.parameters.iter().enumerate().find_map(|(k, parameter)| {
+        let lost = term.parameters.iter().enumerate().find(|(k, parameter)| {
             let is = &intervals[&term.key(parameter)];
             let needed = parameter.scale == Scale::Log && family.needs(index, &parameter.name);
-            let (lower, upper) = family.limits(&node.model, index, k);
+            let (lower, upper) = family.limits(&node.model, index, *k);
             let beyond = is.low <= lower || is.high >= upper;
             // Where it makes no sense it is another law, however little its value matters.
             let senseless = upper < parameter.upper && is.high >= upper;
             let lost = needed && (beyond || !is.identifiable) || senseless;
-            (parameter.role != Role::Amplitude && lost).then_some((parameter, is, beyond))
+            parameter.role != Role::Amplitude && lost
         });
+        let lost = lost.map(|(_, parameter)| parameter);
         let unknown = |parameter: &TermParameter, is: &Estimate| {
             let (low, high, unit) = (is.low, is.high, is.unit.clone());
             (index, Refusal::Unknown { parameter: term.key(parameter), low, high, unit })
         };
-        if let Some((parameter, is, beyond)) = lost {
-            // Known well, and where nothing beyond it was looked for.
-            return Some(if beyond && is.identifiable {
-                (index, Refusal::AtLimit { parameter: term.key(parameter) })
-            } else {
-                unknown(parameter, is)
-            });
+        if let Some(parameter) = lost {
+            return Some(unknown(parameter, &intervals[&term.key(parameter)]));
         }
         // A shape that hardly matters lets an amplitude be anything, and so does another amplitude: they are asked at these
         // shapes and proportions; whether there is any of the effect of all of them, whether more of it than was looked for

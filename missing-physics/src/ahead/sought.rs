@@ -20,7 +20,7 @@ pub(super) struct Sought<'a, F: ModelFamily + ?Sized> {
     pub(super) on_part: bool,
 }
 
-impl<'a, F: ModelFamily + ?Sized> Sought<'a, F> {
+impl<F: ModelFamily + ?Sized> Sought<'_, F> {
     /// The same without names that are not the cause.
     pub(super) fn judged(mut self, thresholds: &Thresholds) -> Self {
         let Reading { family, .. } = self.reading;
