@@ -101,6 +101,17 @@ mod tests {
     }
 
     #[test]
+    fn a_segment_of_three_samples_begins_with_the_mean_velocity_of_all_of_it() {
+        let long = pulled();
+        let segment = (0..long.len()).map(|k| i64::from(k >= 3) + i64::from(k >= 101)).collect();
+        let (time, channels) = (long.time().to_vec(), long.channels().to_vec());
+        let short = Recording::with_segments("short", time, channels, segment).unwrap();
+        let run = free_run(&Model::new(Axis::Linear, 3.0).unwrap(), &short).unwrap();
+        let v = run.channel("velocity").unwrap().values[0];
+        assert!((v - 2e-3).abs() < 1e-12, "{v}");
+    }
+
+    #[test]
     fn a_recording_that_is_no_free_run_has_no_deviation() {
         assert!(deviation(&pulled()).is_err());
     }
