@@ -43,9 +43,12 @@ pub fn part(recording: &Recording, part: &Part) -> Result<Recording, RecordingEr
         }
     }
     let pick = |values: &[f64]| -> Vec<f64> { kept.iter().map(|k| values[*k]).collect() };
+    // A force of which nobody said what it does between samples is most often a command.
+    let hold = recording.known_hold().unwrap_or(Hold::ZeroOrder);
     let channels = recording.channels().iter().map(|c| {
         let values = if every > 1 && c.name == INPUT {
-            kept.iter().zip(&until).map(|(k, next)| mean(recording, &c.values, *k, *next)).collect()
+            let until = kept.iter().zip(&until);
+            until.map(|(k, next)| hold.mean(recording.time(), &c.values, *k, *next)).collect()
         } else {
             pick(&c.values)
         };
@@ -55,21 +58,11 @@ pub fn part(recording: &Recording, part: &Part) -> Result<Recording, RecordingEr
     let left =
         Recording::with_segments(recording.name(), pick(recording.time()), channels, segment)?;
     // A mean is what is held instead.
-    let is_sampled = recording.known_hold() == Some(Hold::Sampled);
-    Ok(if every > 1 && is_sampled {
+    Ok(if every > 1 && hold == Hold::Sampled {
         left.with_hold(Hold::ZeroOrder)
     } else {
         left.with_hold_of(recording)
     })
-}
-
-/// Mean of an input from one sample to another.
-fn mean(recording: &Recording, values: &[f64], from: usize, to: usize) -> f64 {
-    let time = recording.time();
-    let is_sampled = recording.known_hold() == Some(Hold::Sampled);
-    let acts = |k: usize| if is_sampled { 0.5 * (values[k] + values[k + 1]) } else { values[k] };
-    let impulse: f64 = (from..to).map(|k| acts(k) * (time[k + 1] - time[k])).sum();
-    if to > from { impulse / (time[to] - time[from]) } else { values[from] }
 }
 
 #[cfg(test)]

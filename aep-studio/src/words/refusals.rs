@@ -27,9 +27,6 @@ pub fn reason(decision: &Decision) -> Option<String> {
     })
 }
 
-/// A parameter is known whose interval ends below so many times its begin (a factor of 3 to either side).
-const KNOWN: f64 = 9.0;
-
 /// Why what was fitted is no such effect.
 pub fn refusal(refusal: &Refusal) -> String {
     match refusal {
@@ -41,14 +38,6 @@ pub fn refusal(refusal: &Refusal) -> String {
             quantity(value.value, &value.unit),
             quantity(*limit, &value.unit)
         ),
-        // What is known so well was refused for where it lies.
-        Refusal::Unknown { parameter, low, high, unit } if *low > 0.0 && *high < KNOWN * low => {
-            format!(
-                "{parameter} lies at the limit of its search ({} to {})",
-                quantity(*low, unit),
-                quantity(*high, unit)
-            )
-        }
         Refusal::Unknown { parameter, low, high, unit } => format!(
             "{parameter} may be anything from {} to {}",
             quantity(*low, unit),
@@ -99,15 +88,6 @@ mod tests {
                     unit: "m".into(),
                 },
                 "e.b may be anything from 1.00 µm to 10.0 mm",
-            ),
-            (
-                Refusal::Unknown {
-                    parameter: "e.v".into(),
-                    low: 9.4e-5,
-                    high: 9.5e-5,
-                    unit: "m/s".into(),
-                },
-                "e.v lies at the limit of its search (94.0 µm/s to 95.0 µm/s)",
             ),
             (
                 Refusal::ShareOfGiven { effect: effect(), share: 0.013, least: 0.02 },

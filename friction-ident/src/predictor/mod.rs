@@ -218,46 +218,24 @@ impl Predictor {
             let start = kept.len();
             for k in segment.clone().step_by(every) {
                 kept.push(k);
-                force.push(self.mean_force(k, (k + every).min(segment.end - 1)));
+                let next = (k + every).min(segment.end - 1);
+                force.push(self.hold.mean(&self.time, &self.force, k, next));
             }
             segments.push(start..kept.len());
         }
         // A white force is as much less in a mean.
         let less = (every as f64).sqrt();
         let Noise { position, force: noise, force_at_most } = self.noise;
-        let noise = Noise { position, force: noise / less, force_at_most: force_at_most / less };
-        let at = |values: &[f64]| -> Vec<f64> { kept.iter().map(|k| values[*k]).collect() };
-        let mut coarser = Self {
-            origin: kept.iter().map(|k| self.origin[*k]).collect(),
-            time: at(&self.time),
-            position: at(&self.position),
+        let coarser = Self {
             bends: vec![0.0; kept.len()],
             hold: Hold::ZeroOrder,
-            stale: kept.iter().map(|k| self.stale[*k]).collect(),
-            came: kept.iter().map(|k| self.came[*k]).collect(),
-            counted: Vec::new(),
-            teams: Vec::new(),
-            gains: Vec::new(),
             ladder: self.ladder.iter().map(|force| force / less).collect(),
             interval: self.interval * every as f64,
+            noise: Noise { position, force: noise / less, force_at_most: force_at_most / less },
             force,
-            segments,
-            noise,
-            ..*self
+            ..self.at(&kept, segments)
         };
-        coarser.arrange();
-        coarser.tune(self.plant.0, self.plant.1);
-        Some(coarser)
-    }
-
-    /// Mean of the force from one sample to another.
-    fn mean_force(&self, from: usize, to: usize) -> f64 {
-        let acts = |k: usize| match self.hold {
-            Hold::Sampled => 0.5 * (self.force[k] + self.force[k + 1]),
-            Hold::ZeroOrder => self.force[k],
-        };
-        let impulse: f64 = (from..to).map(|k| acts(k) * (self.time[k + 1] - self.time[k])).sum();
-        if to > from { impulse / (self.time[to] - self.time[from]) } else { self.force[from] }
+        Some(coarser.arranged())
     }
 
     /// The same on pieces; see [`Self::thinned`].
@@ -279,25 +257,36 @@ impl Predictor {
             end += part.len();
             start..end
         });
-        let mut thinned = Self {
-            segments: segments.collect(),
-            origin: picked(&self.origin, &parts),
-            time: picked(&self.time, &parts),
-            position: picked(&self.position, &parts),
-            force: picked(&self.force, &parts),
-            bends: picked(&self.bends, &parts),
-            stale: picked(&self.stale, &parts),
-            came: picked(&self.came, &parts),
+        let kept: Vec<usize> = parts.iter().flat_map(Range::clone).collect();
+        let segments = segments.collect();
+        Some(self.at(&kept, segments).arranged())
+    }
+
+    /// What is known at these samples, which are those of `segments`: not arranged yet.
+    fn at(&self, samples: &[usize], segments: Vec<Range<usize>>) -> Self {
+        Self {
+            segments,
+            origin: picked(&self.origin, samples),
+            time: picked(&self.time, samples),
+            position: picked(&self.position, samples),
+            force: picked(&self.force, samples),
+            bends: picked(&self.bends, samples),
+            stale: picked(&self.stale, samples),
+            came: picked(&self.came, samples),
             counted: Vec::new(),
             teams: Vec::new(),
             gains: Vec::new(),
             ladder: self.ladder.clone(),
             noise: self.noise,
             ..*self
-        };
-        thinned.arrange();
-        thinned.tune(self.plant.0, self.plant.1);
-        Some(thinned)
+        }
+    }
+
+    /// The same, ready.
+    fn arranged(mut self) -> Self {
+        self.arrange();
+        self.tune(self.plant.0, self.plant.1);
+        self
     }
 
     /// Time that the samples that count stand for, s.
@@ -457,9 +446,9 @@ fn bends(recording: &Recording, force: &[f64]) -> Vec<f64> {
     bends
 }
 
-/// The values of these parts, one after the other.
-fn picked<T: Copy>(values: &[T], parts: &[Range<usize>]) -> Vec<T> {
-    parts.iter().flat_map(|part| values[part.clone()].iter().copied()).collect()
+/// The values at these samples.
+fn picked<T: Copy>(values: &[T], samples: &[usize]) -> Vec<T> {
+    samples.iter().map(|k| values[*k]).collect()
 }
 
 #[cfg(test)]

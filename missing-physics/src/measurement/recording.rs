@@ -15,6 +15,18 @@ pub enum Hold {
     ZeroOrder,
 }
 
+impl Hold {
+    /// Mean of an input from one sample to another one, by what it does between samples; its value where both are the same.
+    pub fn mean(self, time: &[f64], input: &[f64], from: usize, to: usize) -> f64 {
+        let acts = |k: usize| match self {
+            Self::Sampled => 0.5 * (input[k] + input[k + 1]),
+            Self::ZeroOrder => input[k],
+        };
+        let impulse: f64 = (from..to).map(|k| acts(k) * (time[k + 1] - time[k])).sum();
+        if to > from { impulse / (time[to] - time[from]) } else { input[from] }
+    }
+}
+
 /// One measured quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
