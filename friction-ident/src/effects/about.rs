@@ -142,10 +142,10 @@ impl Parameter {
         self.default * axis.typical(self.quantity)
     }
 
-    /// Whether a model may carry `value`: finite, positive where the scale is logarithmic. Bounds
-    /// are for searches; a file may go beyond them.
+    /// Whether a model may carry `value`: finite, positive where all that is searched is. Bounds are for searches; a
+    /// file may go beyond them otherwise.
     pub fn accepts(&self, value: f64) -> bool {
-        value.is_finite() && (self.scale == Scale::Linear || value > 0.0)
+        value.is_finite() && (self.low <= 0.0 || value > 0.0)
     }
 }
 

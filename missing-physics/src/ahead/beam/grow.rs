@@ -108,7 +108,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         }
         // Inside the budget rivals need no extension.
         let width = if self.budget(&ranked[0]) < INSIDE { 1 } else { self.thresholds.beam };
-        climb.beam = ranked.iter().take(width).cloned().collect();
+        // A smaller set that predicts better was extended by every effect: none promised to do as much.
+        let smaller = climb.nodes.iter().filter_map(|sets| sets.first()).cloned();
+        let smaller = self.sorted(smaller.collect());
+        let loses = |set: &Node| self.comparison.compare(set, &smaller[0]).nats;
+        let goes_on = |set: &&Node| loses(set) <= self.thresholds.better.abs();
+        climb.beam = ranked.iter().take(width).filter(goes_on).cloned().collect();
+        climb.ended = climb.beam.is_empty();
         climb.nodes.push(ranked);
     }
 

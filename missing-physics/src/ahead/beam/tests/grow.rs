@@ -185,6 +185,25 @@ fn beside_sets_that_are_not_the_best_eight_effects_are_looked_at_whatever_their_
     assert_eq!(leading.into_iter().collect::<Vec<_>>(), [1, 3, 4, 6, 7, 8, 9, 10]);
 }
 
+#[test]
+fn the_search_ends_where_a_smaller_set_predicts_better() {
+    let plant = Plant::new(1, &[(WAVE, &[0.05]), (BEAT, &[0.04])]);
+    let fitted = |term| search(&plant, narrow()).refit(&Plant::model(&[(term, &[0.05])]), 1, 6);
+    let [wave, push] = [WAVE, PUSH].map(fitted);
+    // The beat is found beside a push, which is not there.
+    for (sets, ends) in [(vec![push.clone()], false), (vec![wave, push.clone()], true)] {
+        let mut climb =
+            Climb { beam: vec![push.clone()], ended: false, ..climb(&plant, vec![sets]) };
+        let thresholds = Thresholds { better: 10.0, ..narrow() };
+        let mut search = Search::new(&plant, &plant, thresholds, vec![BEAT], &never, &|_| ());
+        search.grow(&mut climb);
+        assert_eq!((climb.ended, climb.beam.is_empty()), (ends, ends));
+        let compared: Vec<Vec<usize>> =
+            climb.nodes[2].iter().map(|set| set.effects(&plant)).collect();
+        assert_eq!(compared, [[PUSH, BEAT]], "it is told how much worse it is");
+    }
+}
+
 /// Terms of the last effect of each set beside a wave, where that set lags so far behind.
 fn beside_a_wave(promised: &[usize], lag: f64) -> Vec<usize> {
     let plant = Plant::new(1, &[(WAVE, &[0.05]), (BEAT, &[0.05]), (TONE, &[0.05, 5.0])]);
