@@ -66,6 +66,8 @@ pub struct Climb {
     refused: Vec<(Node, Refusal)>,
     /// Those of the last size that are extended.
     beam: Vec<Node>,
+    /// Other places that the sets of one effect are fitted from.
+    elsewhere: Vec<Node>,
     /// A set that another reading led to.
     led: Option<Node>,
     ended: bool,
@@ -103,6 +105,8 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     /// Sets that were compared with the last one as simpler or less simple, with effects that every system has besides: as
     /// many effects or not.
     twins: Vec<Node>,
+    /// Effects that lower no error, or none that others would not: they are none.
+    none: BTreeSet<usize>,
     /// Whether what leaves more than the sensors make counts for nothing: what is left beside it is not asked.
     pub all_or_nothing: bool,
 }
@@ -130,6 +134,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             untried: BTreeSet::new(),
             promised: BTreeSet::new(),
             twins: Vec::new(),
+            none: BTreeSet::new(),
             all_or_nothing: false,
         }
     }
@@ -190,8 +195,9 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             ranking: Vec::new(),
             screened: Vec::new(),
             refused: Vec::new(),
-            beam: std::iter::once(base.clone()).chain(elsewhere).collect(),
+            beam: std::iter::once(&base).chain(&elsewhere).cloned().collect(),
             base,
+            elsewhere,
             led: None,
             ended: false,
         };
@@ -310,8 +316,12 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                 continue;
             }
             let best = self.size(climb, climb.base.clone(), 0);
+            self.none.clear();
             let (needed, costs) = self.prune(climb, best);
             let size = costs.len();
+            if self.goes_without(climb, &needed, size) {
+                continue;
+            }
             let known = |set: &Node| self.key(set) == self.key(&needed);
             let sets = climb.nodes.get(size).map_or(&[][..], Vec::as_slice);
             let whole = climb.nodes.len() <= size;
@@ -330,6 +340,24 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
             climb.beam = sets;
             climb.ended = false;
         }
+    }
+
+    /// Whether the search begins once more, to sets that are no larger, without what is no effect: where such sets stood before
+    /// the one that is needed, they took the places of others.
+    fn goes_without(&mut self, climb: &mut Climb, needed: &Node, size: usize) -> bool {
+        let has_none = |set: &Node| !self.key(set).is_disjoint(&self.none);
+        let sets = climb.nodes.get(size).map_or(&[][..], Vec::as_slice);
+        let first = sets.iter().find(|set| self.key(set) == self.key(needed) || has_none(set));
+        if !first.is_some_and(has_none) || (self.stop)() {
+            return false;
+        }
+        let open = self.candidates.iter().copied();
+        self.candidates = open.filter(|term| !self.none.contains(&self.main(*term))).collect();
+        self.thresholds.most = size;
+        let again = self.begin(climb.base.clone(), climb.elsewhere.clone());
+        let before = std::mem::replace(climb, again);
+        climb.refused.extend(before.refused);
+        true
     }
 
     /// Chance of as large a difference on all of the recording.

@@ -81,7 +81,10 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             let Some((goes, because)) = idle.pop().filter(|_| costs.len() > 1) else {
                 return (best, costs);
             };
-            let (_, cost, without) = costs.swap_remove(goes);
+            let (term, cost, without) = costs.swap_remove(goes);
+            if because != Reason::AsGoodWithout {
+                self.none.insert(self.main(term));
+            }
             let from = best.clone();
             self.note(
                 costs.len(),

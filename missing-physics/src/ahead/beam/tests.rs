@@ -47,6 +47,7 @@ fn climb(plant: &Plant, sizes: Vec<Vec<Node>>) -> Climb {
         refused: Vec::new(),
         beam: Vec::new(),
         base,
+        elsewhere: Vec::new(),
         led: None,
         ended: true,
     }

@@ -54,6 +54,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             screened: climb.screened.clone(),
             refused: climb.refused.clone(),
             beam: vec![usual.clone()],
+            elsewhere: climb.elsewhere.clone(),
             led: None,
             ended: false,
         };

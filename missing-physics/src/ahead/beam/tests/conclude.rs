@@ -53,6 +53,7 @@ fn an_effect_that_the_others_do_without_goes_and_one_that_they_need_stays() {
     let [dropped] = &search.decisions[..] else { panic!("{:?}", search.decisions) };
     assert_eq!(dropped.outcome, Outcome::Dropped);
     assert_eq!(dropped.because, Some(Reason::AsGoodWithout));
+    assert!(search.none.is_empty(), "another set may need it");
 }
 
 #[test]
@@ -82,6 +83,25 @@ fn an_effect_with_which_the_error_does_not_fall_beside_others_goes_whatever_it_g
         assert_eq!(last.effects(&plant), kept, "{:?}", search.decisions);
         let because = search.decisions.first().and_then(|d| d.because.clone());
         assert_eq!(because, scale.map(|_| Reason::ErrorNoLower));
+        assert_eq!(
+            search.none.into_iter().collect::<Vec<_>>(),
+            scale.map_or(vec![], |_| vec![TONE])
+        );
+    }
+}
+
+#[test]
+fn where_what_is_no_effect_stood_before_what_is_left_the_search_begins_without_it() {
+    let plant = Plant::new(2, &[(WAVE, &[0.05]), (BEAT, &[0.02])]);
+    let [both, beat] = [(BOTH, &[0.04][..]), (BEAT, &[0.02])].map(|term| node(&plant, &[term]));
+    for (sets, again) in [([&both, &beat], true), ([&beat, &both], false)] {
+        let mut search = search(&plant, narrow());
+        search.none.insert(BOTH);
+        let mut climb = climb(&plant, vec![sets.map(Clone::clone).to_vec()]);
+        assert_eq!(search.goes_without(&mut climb, &beat, 1), again);
+        assert_eq!(search.candidates.contains(&BOTH), !again);
+        assert_eq!(climb.nodes[1][0].effects(&plant), if again { [WAVE] } else { [BEAT] });
+        assert_eq!(search.thresholds.most, if again { 1 } else { narrow().most });
     }
 }
 
