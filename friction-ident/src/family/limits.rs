@@ -59,7 +59,8 @@ impl Limits {
             force: Size::of(&prepared.force),
             usual_force: quantile(&prepared.force, 1.0 - SATURATED),
             speed: Size::of(&prepared.velocity),
-            acceleration: Size::of(&prepared.acceleration),
+            // Of coarse counts that follow each other quickly the smoothed position has an acceleration that is all noise.
+            acceleration: Size::of(&prepared.compare(&prepared.acceleration)),
             stroke: (stroke.1 - stroke.0).max(f64::MIN_POSITIVE),
             rest_speed: prepared.rest_speed,
             position_noise: prepared.position_noise,
