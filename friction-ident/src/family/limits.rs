@@ -282,8 +282,28 @@ fn line(trials: Trials, parameter: &TermParameter) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::family::testing::{family, model};
-    use missing_physics::ModelFamily;
+    use missing_physics::{Channel, ModelFamily, Recording};
+
+    #[test]
+    fn how_large_a_mass_may_be_does_not_depend_on_the_counts() {
+        let most = |count: f64| {
+            let time: Vec<f64> = (0..8000).map(|k| 2.5e-4 * f64::from(k)).collect();
+            let position = |t: &f64| (0.05 * (6.0 * t).sin() / count).round() * count;
+            let position: Vec<f64> = time.iter().map(position).collect();
+            let force = time.iter().map(|t| -18.0 * (6.0 * t).sin()).collect();
+            let channels =
+                vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+            let recording = Recording::new("sine", time, channels).unwrap();
+            let prepared = Prepared::new(&recording, None).unwrap();
+            let axis = (Axis::Linear, Effort::default());
+            Limits::of(&prepared, axis, (-0.05, 0.05)).mass().parameters[0].upper
+        };
+        for count in [1e-9, 1e-5, 2e-4] {
+            assert!((most(count) / 200.0 - 1.0).abs() < 0.1, "{count}: {}", most(count));
+        }
+    }
 
     #[test]
     fn a_friction_by_the_force_of_inertia_is_less_than_the_mass_and_a_coupling_rings() {

@@ -172,20 +172,29 @@ impl Prepared {
             );
         }
         let relative = bandwidth.map_or(BANDWIDTH, |hz| hz * interval).min(0.2);
-        let prepared = Self::from_raw(raw, interval, relative, recording.hold())?;
-        Ok(if bandwidth.is_none() { prepared.above_noise() } else { prepared })
+        let at = |relative: f64, smoother: f64| {
+            Self::from_raw(&raw, interval, (relative, smoother), recording.hold())
+        };
+        let prepared = at(relative, SMOOTHER.max(1.5 * relative))?;
+        // Beyond the bandwidth the velocity is noise, too: of coarse counts friction would turn with it.
+        let narrower = prepared.above_noise().filter(|_| bandwidth.is_none());
+        let narrower =
+            narrower.and_then(|relative| at(relative, SMOOTHER / BANDWIDTH * relative).ok());
+        Ok(narrower.unwrap_or(prepared))
     }
 
-    /// The same at the widest bandwidth at which the acceleration is not noise.
-    fn above_noise(mut self) -> Self {
-        while self.acceleration_noise() > NOISE {
-            let narrower = self.clone().with_bandwidth(self.bandwidth * self.interval / NARROWER);
-            if narrower.grid.len() < LEAST_POINTS {
-                break;
+    /// The widest bandwidth at which the acceleration is not noise, as a share of the sampling frequency, where this one is
+    /// wider.
+    fn above_noise(&self) -> Option<f64> {
+        let narrower = |wider: &Self| {
+            if wider.acceleration_noise() <= NOISE {
+                return None;
             }
-            self = narrower;
-        }
-        self
+            let narrower = wider.clone().with_bandwidth(wider.bandwidth * self.interval / NARROWER);
+            (narrower.grid.len() >= LEAST_POINTS).then_some(narrower)
+        };
+        let last = std::iter::successors(narrower(self), narrower).last()?;
+        Some(last.bandwidth * self.interval)
     }
 
     /// Share of the square of the compared acceleration that noise of the position makes. The smoother takes out what
@@ -207,12 +216,11 @@ impl Prepared {
     }
 
     fn from_raw(
-        raw: Raw,
+        raw: &Raw,
         interval: f64,
-        relative: f64,
+        (relative, smoother): (f64, f64),
         hold: Hold,
     ) -> Result<Self, PreparationError> {
-        let smoother = SMOOTHER.max(1.5 * relative);
         let light = raw.motion(&LowPass::new(smoother), interval, hold);
         let heavy = raw.motion(&LowPass::new(smoother * HEAVIER / SMOOTHER), interval, hold);
         let residue: Vec<f64> =
@@ -226,12 +234,12 @@ impl Prepared {
             light.velocity.iter().map(|v| f64::from(u8::from(v.abs() > rest_speed))).collect();
         let prepared = Self {
             interval,
-            time: raw.time,
+            time: raw.time.clone(),
             position: light.position,
             velocity: light.velocity,
             acceleration: light.acceleration,
-            force: raw.force,
-            segments: raw.segments,
+            force: raw.force.clone(),
+            segments: raw.segments.clone(),
             moving,
             grid: Vec::new(),
             stride: 1,
@@ -457,10 +465,16 @@ mod tests {
     use missing_physics::Channel;
 
     fn sine(interval: f64, jitter: f64) -> Recording {
+        counted(interval, jitter, 1e-12)
+    }
+
+    /// The same by a sensor that counts.
+    fn counted(interval: f64, jitter: f64, count: f64) -> Recording {
         let time: Vec<f64> = (0..4000)
             .map(|k| interval * (f64::from(k) + jitter * (1.7 * f64::from(k)).sin()))
             .collect();
-        let position = time.iter().map(|t| 0.05 * (6.0 * t).sin()).collect();
+        let counted = |x: f64| (x / count).round() * count;
+        let position = time.iter().map(|t| counted(0.05 * (6.0 * t).sin())).collect();
         let force = time.iter().map(|t| 10.0 * (6.0 * t).cos()).collect();
         let channels =
             vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
@@ -475,6 +489,25 @@ mod tests {
             assert!((prepared.velocity[k] - 0.3 * (6.0 * t).cos()).abs() < 3e-4);
             assert!((prepared.acceleration[k] + 1.8 * (6.0 * t).sin()).abs() < 2e-3);
         }
+    }
+
+    #[test]
+    fn of_coarse_counts_at_a_high_rate_velocity_and_acceleration_are_those_of_the_motion() {
+        let recording = counted(2.5e-4, 0.0, 2e-4);
+        let prepared = Prepared::new(&recording, None).unwrap();
+        assert!(prepared.bandwidth < 50.0, "{}", prepared.bandwidth);
+        let errs = |of: &[f64], truth: &dyn Fn(f64) -> f64| {
+            let truth: Vec<f64> = prepared.grid.iter().map(|k| truth(prepared.time[*k])).collect();
+            let off: Vec<f64> = of.iter().zip(&truth).map(|(a, b)| a - b).collect();
+            rms(&off) / rms(&truth)
+        };
+        let velocity = errs(&prepared.sample(&prepared.velocity), &|t| 0.3 * (6.0 * t).cos());
+        let acceleration = prepared.compare(&prepared.acceleration);
+        let acceleration = errs(&acceleration, &|t| -1.8 * (6.0 * t).sin());
+        assert!(velocity < 0.03 && acceleration < 0.3, "{velocity} {acceleration}");
+        // As wide as the rate would allow it is mostly noise.
+        let wide = Prepared::new(&recording, Some(200.0)).unwrap();
+        assert!(rms(&wide.acceleration) > 20.0 * rms(&prepared.acceleration));
     }
 
     #[test]
