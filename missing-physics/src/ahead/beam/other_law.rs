@@ -4,7 +4,7 @@
 //! guides do. Where an effect is another law of a usual one, and next to nothing of that one is left beside it, it is no
 //! effect that is missing, and the search begins once more from the base model with that law.
 
-use super::{Climb, Search};
+use super::{Climb, STEPS, Search};
 use crate::ahead::node::Node;
 use crate::family::{ModelFamily, Role};
 use crate::report::{Outcome, Reason, Remark};
@@ -13,23 +13,29 @@ use crate::report::{Outcome, Reason, Remark};
 const LEFT: f64 = 0.2;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The base model with an effect of the last one that leaves nothing of what it is another law of, beside the others or
-    /// alone, if any does.
+    /// The base model with an effect of the last one that leaves nothing of what it is another law of, if any does.
     pub(super) fn with_other_law(&mut self, climb: &Climb, last: &Node) -> Option<Node> {
         let base = &climb.base;
-        let (law, of, with) = Self::added(base, last).into_iter().find_map(|law| {
+        let (law, of) = Self::added(base, last).into_iter().find_map(|law| {
             let of = self.family.law_of(law).filter(|_| !(self.stop)())?;
-            let with = self.only(base, last, &[law]);
-            // What is found beside it may stand on some of either.
-            let is = self.is_gone(base, last, of)? || self.is_gone(base, &with, of)?;
-            is.then_some((law, of, with))
+            let is = self.is_gone(base, last, of)? || self.does_without(base, last, of);
+            is.then_some((law, of))
         })?;
+        let with = self.only(base, last, &[law]);
         let by = self.comparison.compare(base, &with);
         self.note(1, &with, base, by, Outcome::Added, Some(Reason::OtherLaw));
         let name = |term: usize| self.family.terms()[term].name.clone();
         let nats = self.in_full(by.nats);
         self.remarks.push(Remark::OtherLaw { of: name(of), law: name(law), nats });
         Some(with)
+    }
+
+    /// Whether a model predicts as well without a term of the base model: it may stand on some of either law.
+    fn does_without(&self, base: &Node, last: &Node, term: usize) -> bool {
+        let model = last.model.without(self.family, term);
+        let without = self.refit(&model, last.setting, STEPS.1);
+        let gain = self.comparison.compare(base, last).nats;
+        self.comparison.compare(&without, last).nats <= self.thresholds.clear(gain)
     }
 
     /// Whether next to nothing is left of a term of the base model; nothing where that does not have it.
