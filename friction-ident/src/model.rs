@@ -455,7 +455,8 @@ mod tests {
         assert!(matches!(model.set("mass", -1.0), Err(ModelError::BadValue { .. })));
         assert!(matches!(model.set("mass", f64::NAN), Err(ModelError::BadValue { .. })));
         assert!(matches!(model.set("stribeck.v_s", 0.0), Err(ModelError::BadValue { .. })));
-        assert!(matches!(model.set("stribeck.delta", 0.0), Err(ModelError::BadValue { .. })));
+        let flat = table().with("motor-gain:knee", &[("n", 0.0)]);
+        assert!(matches!(flat, Err(ModelError::BadValue { .. })));
         assert!(model.set("stribeck.dF", 0.0).is_ok());
     }
 

@@ -51,6 +51,8 @@ static ABOUT: About = About {
 /// Counts that a wave is larger than: some ten places where an axis rests again and again, each rounded by 0.29 counts (rms),
 /// make a wave of this size between them.
 const COUNTS: f64 = 0.1;
+/// Counts that a period is longer than: rounding itself repeats from count to count.
+const SHORTEST: f64 = 2.0;
 
 /// Order of the low-pass filter, forwards and backwards, behind [`passed`].
 const ORDER: i32 = 8;
@@ -115,7 +117,7 @@ impl Effect for Encoder {
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        as_small_as_rounding(&found.values[..2], found)
+        as_rounding_makes(1, found)
     }
 
     fn told_apart(&self) -> &'static [Apart] {
@@ -151,12 +153,17 @@ impl Sensor for Encoder {
     }
 }
 
-/// Why waves of these amplitudes are none, if so.
-fn as_small_as_rounding(amplitudes: &[f64], found: &AsFound<'_>) -> Option<Refused> {
+/// Why so many harmonics are none, if so.
+fn as_rounding_makes(harmonics: usize, found: &AsFound<'_>) -> Option<Refused> {
+    let (amplitudes, rest) = found.values.split_at(2 * harmonics);
     let value = amplitudes.iter().map(|a| a * a).sum::<f64>().sqrt();
     let limit = COUNTS * found.count;
     let meaning = "it is as small as what rounding to counts makes of a few places at rest";
-    (value <= limit).then_some(Refused { name: "amplitude", value, limit, unit_of: "a", meaning })
+    let small = Refused { name: "amplitude", value, limit, unit_of: "a", meaning };
+    let (value, limit) = (rest[0], SHORTEST * found.count);
+    let meaning = "its period is that of the counts";
+    let short = Refused { name: "p", value, limit, unit_of: "p", meaning };
+    (small.value <= small.limit).then_some(small).or((value <= limit).then_some(short))
 }
 
 /// Takes a wave out of a motion that was shown with it.
@@ -203,9 +210,9 @@ mod tests {
 
     #[test]
     fn a_wave_as_small_as_what_rounding_makes_is_none() {
-        let refused = |a: f64, b: f64| {
+        let refused = |a: f64, b: f64, p: f64| {
             let found = AsFound {
-                values: &[a, b, 5e-3],
+                values: &[a, b, p],
                 least: &[-1e-4, -1e-4, 1e-6],
                 most: &[1e-4, 1e-4, 0.05],
                 mass: 30.0,
@@ -215,9 +222,12 @@ mod tests {
             };
             Encoder.refused(&found).map(|refused| (refused.value, refused.limit))
         };
-        assert_eq!(refused(-5.5e-8, 0.0), Some((5.5e-8, 1e-7)));
-        assert!(refused(6e-8, -7e-8).is_some());
-        assert_eq!(refused(8e-8, -7e-8), None);
+        assert_eq!(refused(-5.5e-8, 0.0, 5e-3), Some((5.5e-8, 1e-7)));
+        assert!(refused(6e-8, -7e-8, 5e-3).is_some());
+        assert_eq!(refused(8e-8, -7e-8, 5e-3), None);
+        // As long as a count or two it is the rounding, however large.
+        assert_eq!(refused(3e-7, 0.0, 1.9e-6), Some((1.9e-6, 2e-6)));
+        assert_eq!(refused(3e-7, 0.0, 2.1e-6), None);
     }
 
     #[test]

@@ -26,8 +26,9 @@ const FREQUENCY: Parameter = Parameter::shape(
     (1.0, 500.0),
     50.0,
 );
+/// What joints and bearings hold together is damped by half a per cent and more.
 const ZETA: Parameter =
-    Parameter::shape("zeta", "its damping ratio", Quantity::One, (1e-3, 2.0), 0.05);
+    Parameter::shape("zeta", "its damping ratio", Quantity::One, (5e-3, 2.0), 0.05);
 
 /// Damping ratio from which on a resonance has no half-power bandwidth, as its peak does not reach the square root of 2:
 /// sqrt((1 - 1/sqrt 2)/2).
@@ -35,7 +36,7 @@ const SILENT: f64 = 0.383;
 
 /// Why a coupling is none. A force drives the mass, nothing blocks it: what rings are both bodies against each other, damped
 /// by `zeta sqrt(1 + m_L/m)`. What swings as slowly as it may takes the mass along, and hides how large that is; what swings as
-/// fast as it may is not seen to swing.
+/// fast as it may is not seen to swing, and what swings on as long as it may follows how counts beat with the samples.
 fn not_one(found: &AsFound<'_>) -> Option<Refused> {
     let zeta = found.values[2];
     let limit = silent(found.values, found.mass);
@@ -45,7 +46,9 @@ fn not_one(found: &AsFound<'_>) -> Option<Refused> {
     let (f, most) = (found.values[1], found.most[1]);
     let meaning = "it swings as fast as it may";
     let fast = Refused { name: "f", value: f, limit: most, unit_of: "f", meaning };
+    let on = found.at_least((2, "zeta"), AT_END, "it swings on as long as it may");
     slow.or_else(|| (AT_END * f >= most).then_some(fast))
+        .or(on)
         .or_else(|| (zeta >= limit).then_some(quiet))
 }
 

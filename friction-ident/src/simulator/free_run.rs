@@ -67,11 +67,11 @@ mod tests {
     use super::*;
     use crate::axis::Axis;
 
-    /// `x = t^2` over 0.1 s twice, from 0 and from 0.3 m: what 6 N do to 3 kg.
+    /// `x = (t - 2 s)^2` over 0.1 s twice, from 0 and from 0.3 m: what 6 N do to 3 kg.
     fn pulled() -> Recording {
-        let time: Vec<f64> = (0..202).map(|k| f64::from(k % 101) * 1e-3).collect();
+        let time: Vec<f64> = (0..202).map(|k| 2.0 + f64::from(k % 101) * 1e-3).collect();
         let run = |k: usize| k / 101;
-        let place = |(k, t): (usize, &f64)| 0.3 * run(k) as f64 + t * t;
+        let place = |(k, t): (usize, &f64)| 0.3 * run(k) as f64 + (t - 2.0).powi(2);
         let position = time.iter().enumerate().map(place).collect();
         let channels = vec![
             Channel::new("force", "N", vec![6.0; time.len()]),

@@ -2,7 +2,7 @@
 
 use super::{
     About, AsFound, CDynamics, Effect, Own, PERIOD, PERIODIC, Parameter, Parameters, Periodic,
-    Quantity, REFERENCE, Refused, SHOWS, Sensor, Shown, Slot, as_small_as_rounding, corrected,
+    Quantity, REFERENCE, Refused, SHOWS, Sensor, Shown, Slot, as_rounding_makes, corrected,
     runs_forwards, turned,
 };
 use crate::simd::{sin_cos_of_turns, vectorised};
@@ -60,7 +60,7 @@ impl Effect for Harmonics {
     }
 
     fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
-        as_small_as_rounding(&found.values[..4], found)
+        as_rounding_makes(2, found)
     }
 
     fn sensor(&self) -> Option<&dyn Sensor> {

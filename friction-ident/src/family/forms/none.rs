@@ -135,6 +135,13 @@ mod tests {
             };
             assert_eq!((value.name.as_str(), value.value, value.unit.as_str()), ("f", 1.0, "Hz"));
             assert_eq!(meaning, "it swings as slowly as it may");
+            let Some(Refusal::NotThatEffect { meaning, .. }) =
+                said(&family, name, &[("zeta", 5e-3)])
+            else {
+                panic!("{name} swings on")
+            };
+            assert_eq!(meaning, "it swings on as long as it may");
+            assert_eq!(said(&family, name, &[("zeta", 6e-3)]), None, "{name}");
         }
     }
 

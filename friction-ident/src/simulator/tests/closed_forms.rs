@@ -23,6 +23,16 @@ fn below_breakaway_nothing_moves_for_any_duration() {
 }
 
 #[test]
+fn the_force_of_the_drive_is_what_its_limit_leaves_of_the_command() {
+    let model = plant(2.0, &[("saturation", &[("u_max", 5.0)])]);
+    let time = times(40, 1e-3);
+    let out = run(&model, &time, Start::default(), |t| if t < 0.02 { 3.0 } else { 9.0 });
+    for (k, force) in out.drive_force.iter().enumerate().skip(1) {
+        assert_eq!(*force, if time[k] < 0.0205 { 3.0 } else { 5.0 }, "{k}");
+    }
+}
+
+#[test]
 fn a_rising_force_breaks_away_at_the_static_level() {
     let model = plant(30.0, &[("coulomb", &[("F_C", 8.0)]), ("stribeck", &[("dF", 2.0)])]);
     let time = times(3000, 1e-3);

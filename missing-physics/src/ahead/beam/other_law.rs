@@ -4,24 +4,29 @@
 //! guides do. Where an effect is another law of a usual one, and next to nothing of that one is left beside it, it is no
 //! effect that is missing, and the search begins once more from the base model with that law.
 
-use super::{Climb, STEPS, Search};
+use super::{Climb, Search};
 use crate::ahead::node::Node;
 use crate::family::{ModelFamily, Role};
 use crate::report::{Outcome, Reason, Remark};
 
 /// Share of its amplitude in the base model that may be left of an effect beside another law of it.
 const LEFT: f64 = 0.2;
+/// The same beside what else was found, where the law alone leaves so little: most of it is the law's.
+const MOST: f64 = 0.5;
 
 impl<F: ModelFamily + ?Sized> Search<'_, F> {
-    /// The base model with an effect of the last one that leaves nothing of what it is another law of, if any does.
+    /// The base model with an effect of the last one that leaves nothing of what it is another law of, beside the others or
+    /// alone, if any does.
     pub(super) fn with_other_law(&mut self, climb: &Climb, last: &Node) -> Option<Node> {
         let base = &climb.base;
-        let (law, of) = Self::added(base, last).into_iter().find_map(|law| {
+        let (law, of, with) = Self::added(base, last).into_iter().find_map(|law| {
             let of = self.family.law_of(law).filter(|_| !(self.stop)())?;
-            let is = self.is_gone(base, last, of)? || self.does_without(base, last, of);
-            is.then_some((law, of))
+            let with = self.only(base, last, &[law]);
+            // What is found beside it may stand on some of either.
+            let left = |node: &Node| self.left(base, node, of);
+            let is = left(last)? <= LEFT || left(last)? <= MOST && left(&with)? <= LEFT;
+            is.then_some((law, of, with))
         })?;
-        let with = self.only(base, last, &[law]);
         let by = self.comparison.compare(base, &with);
         self.note(1, &with, base, by, Outcome::Added, Some(Reason::OtherLaw));
         let name = |term: usize| self.family.terms()[term].name.clone();
@@ -30,22 +35,13 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         Some(with)
     }
 
-    /// Whether a model predicts as well without a term of the base model: it may stand on some of either law.
-    fn does_without(&self, base: &Node, last: &Node, term: usize) -> bool {
-        let model = last.model.without(self.family, term);
-        let without = self.refit(&model, last.setting, STEPS.1);
-        let gain = self.comparison.compare(base, last).nats;
-        self.comparison.compare(&without, last).nats <= self.thresholds.clear(gain)
-    }
-
-    /// Whether next to nothing is left of a term of the base model; nothing where that does not have it.
-    fn is_gone(&self, base: &Node, last: &Node, term: usize) -> Option<bool> {
+    /// The largest share that is left of an amplitude of a term of the base model; nothing where that does not have it.
+    fn left(&self, base: &Node, node: &Node, term: usize) -> Option<f64> {
         let place = base.model.terms.iter().position(|known| *known == term)?;
         let parameters = self.family.terms()[term].parameters.iter();
-        let mut sizes = parameters.zip(base.model.range(self.family, place));
-        Some(sizes.all(|(parameter, k)| {
-            let (before, after) = (base.model.values[k], last.model.values[k]);
-            parameter.role != Role::Amplitude || after.abs() <= LEFT * before.abs()
-        }))
+        let sizes = parameters.zip(base.model.range(self.family, place));
+        let sizes = sizes.filter(|(parameter, _)| parameter.role == Role::Amplitude);
+        let left = |k: usize| (node.model.values[k] / base.model.values[k]).abs();
+        sizes.map(|(_, k)| left(k)).reduce(f64::max)
     }
 }
