@@ -67,6 +67,11 @@ impl OneAhead {
         Predictor::new(recording, mass, damping).map(Self::of)
     }
 
+    /// The same where the recorded force has at least so much noise, N or N m.
+    pub fn with_force_noise(&self, noise: f64) -> Self {
+        Self::of(self.predictor.clone().with_force_noise(noise))
+    }
+
     /// The same of a part of the recording, where it is long: pieces spread over all of it.
     pub fn thinned(&self) -> Option<Self> {
         self.predictor.thinned(MOST_SAMPLES, LONG).map(Self::of)

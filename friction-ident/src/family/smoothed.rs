@@ -42,7 +42,10 @@ impl FrictionFamily {
         force.values = pieces.flat_map(|piece| filter.run(&force.values[piece.clone()])).collect();
         let recording = self.recording.clone().with_channels(channels).ok()?;
         let family = Self::of_any_length(&recording, &options).ok()?.with_stroke_of(self);
-        Some(Self { smoothing: Some(cutoff / self.prepared.interval), ..family })
+        // What did not act stays in the band of the filter: it is noise of a sensor.
+        let noise = self.ahead.as_ref()?.predictor.noise().force_at_most;
+        let ahead = family.ahead.as_ref().map(|ahead| ahead.with_force_noise(noise));
+        Some(Self { smoothing: Some(cutoff / self.prepared.interval), ahead, ..family })
     }
 }
 
@@ -67,6 +70,12 @@ mod tests {
         let off = |(a, b): (&f64, &f64)| (a - b).abs();
         let most = force(&family).iter().zip(&force(last)).map(off).fold(0.0, f64::max);
         assert!(most < 0.05, "{most}");
+        // What is left of its noise in the band is that of a sensor.
+        let noise =
+            |family: &super::FrictionFamily| *family.ahead.as_ref().unwrap().predictor.noise();
+        let quick = noise(&family).force_at_most;
+        assert!(noise(&family).force < quick);
+        assert_eq!((noise(first).force, noise(last).force), (quick, quick));
     }
 
     #[test]

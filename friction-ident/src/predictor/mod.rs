@@ -157,6 +157,16 @@ impl Predictor {
         (!predictor.counted.is_empty()).then_some(predictor)
     }
 
+    /// The same where the recorded force has at least so much white noise, N or N m.
+    pub fn with_force_noise(mut self, noise: f64) -> Self {
+        let Noise { position, force, force_at_most } = self.noise;
+        let (force, force_at_most) = (force.max(noise), force_at_most.max(noise));
+        self.noise = Noise { position, force, force_at_most };
+        let (mass, damping) = self.plant;
+        self.tune(mass, damping);
+        self
+    }
+
     /// Finds which samples count, and what is simulated side by side.
     fn arrange(&mut self) {
         let settled = self.segments.iter().flat_map(|s| self.settled(s));

@@ -350,7 +350,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The reading in which noise of the input is smoothed away, no more of it than it takes for a model to predict better:
+    /// The reading in which noise of the input is smoothed away, as much of it as lets a model predict best, where that is better
     /// than with effects that make the input late, or than where something is left.
     fn without_noise<'f, F: ModelFamily + ?Sized>(
         &self,
@@ -366,29 +366,24 @@ impl<'a> Run<'a> {
         if !is_kept || late == 0 && nothing_is_left {
             return None;
         }
-        let mut before = f64::NEG_INFINITY;
-        for more in 0.. {
-            if (self.stop)() {
-                return None;
-            }
-            let family = reading.family.without_noise(more)?;
-            let smoothed = Reading::of(family)?;
+        let mut best: Option<(Reading<'f, F>, f64)> = None;
+        let families = (0..).map_while(|more| reading.family.without_noise(more));
+        for family in families {
+            let smoothed = Reading::of(family).filter(|_| !(self.stop)())?;
             let ahead = smoothed.asked(*on_part);
             let fitter = Fitter::new(family, ahead).stopped_by(self.stop);
             let setting = best_setting(ahead, &without);
             let node = fitter.refit(without.clone(), setting, IN_FULL);
             let better = self.thresholds.in_part(ahead.share()).better;
             let nats = reading::nats(ahead, (&node, effects - late), (top, effects), better);
-            if nats > if late == 0 { better } else { 0.0 } {
-                return Some(smoothed);
-            }
+            let gain = nats - if late == 0 { better } else { 0.0 };
             // More takes away what acted.
-            if nats <= before {
-                return None;
+            if best.as_ref().is_some_and(|(_, before)| gain <= *before) {
+                break;
             }
-            before = nats;
+            best = Some((smoothed, gain));
         }
-        None
+        best.filter(|(_, gain)| *gain > 0.0).map(|(smoothed, _)| smoothed)
     }
 
     fn reported<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
