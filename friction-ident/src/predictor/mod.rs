@@ -158,6 +158,7 @@ impl Predictor {
     }
 
     /// The same where the recorded force has at least so much white noise, N or N m.
+    #[must_use]
     pub fn with_force_noise(mut self, noise: f64) -> Self {
         let Noise { position, force, force_at_most } = self.noise;
         let (force, force_at_most) = (force.max(noise), force_at_most.max(noise));
