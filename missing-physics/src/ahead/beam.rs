@@ -351,19 +351,13 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         if !first.is_some_and(has_none) || (self.stop)() {
             return false;
         }
-        let none = std::mem::take(&mut self.none);
-        self.leave_out(&none);
+        let open = self.candidates.iter().copied();
+        self.candidates = open.filter(|term| !self.none.contains(&self.main(*term))).collect();
         self.thresholds.most = size;
         let again = self.begin(climb.base.clone(), climb.elsewhere.clone());
         let before = std::mem::replace(climb, again);
         climb.refused.extend(before.refused);
         true
-    }
-
-    /// Looks at effects no longer, in whatever form.
-    fn leave_out(&mut self, effects: &BTreeSet<usize>) {
-        let open = self.candidates.iter().copied();
-        self.candidates = open.filter(|term| !effects.contains(&self.main(*term))).collect();
     }
 
     /// Chance of as large a difference on all of the recording.
