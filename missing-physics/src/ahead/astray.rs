@@ -38,6 +38,21 @@ pub fn elsewhere<F: ModelFamily + ?Sized>(
     SHARES.map(at).to_vec()
 }
 
+/// A start in which what every model has is where a search begins, where the balance makes it as small as it may be: of what
+/// it hardly sees it knows nothing, and from there no fit comes back.
+pub fn seen<F: ModelFamily + ?Sized>(family: &F, mut start: Fitted) -> Fitted {
+    let moved = scales::of(family, &start);
+    let parameters = start.parameters(family).zip(&moved).enumerate();
+    let least = parameters.filter_map(|(k, ((_, parameter), moved))| {
+        let least = moved.is_known() && moved.is_at_far_limit();
+        (least && start.values[k] < parameter.start).then_some((k, parameter.start))
+    });
+    for (k, begin) in least.collect::<Vec<_>>() {
+        start.values[k] = begin;
+    }
+    start
+}
+
 /// What every model has and is far larger in this one than the balance with the same effects makes it, or, asked `either_way`,
 /// far smaller or as small as it may be. Noise makes what the balance says too small: what is smaller still is so by more than
 /// that. It is asked of what predicts; of residuals the balance is the model itself, and what every model has may be as good as
@@ -71,7 +86,7 @@ pub fn astray<F: ModelFamily + ?Sized>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ahead::testing::{Plant, WAVE};
+    use crate::ahead::testing::{DRIVE, Plant, WAVE};
 
     fn at(drive: f64, wave: f64) -> Fitted {
         let mut model = Plant::model(&[(WAVE, &[wave])]);
@@ -92,6 +107,17 @@ mod tests {
         assert!(drives(1.0, 2.0).is_empty() && drives(2.0, 1.0).is_empty());
         // An effect of the base may go anywhere.
         assert!(elsewhere(&plant, &at(1.0, 0.01), &at(1.0, 0.5)).is_empty());
+    }
+
+    #[test]
+    fn what_the_balance_makes_as_small_as_it_may_be_begins_where_searches_do() {
+        let plant = Plant::new(1, &[]);
+        let drive = plant.terms()[DRIVE].parameters[0].clone();
+        let begun = |drive: f64, wave: f64| seen(&plant, at(drive, wave)).values;
+        assert_eq!(begun(drive.lower, 0.05), [drive.start, 0.05]);
+        assert_eq!(begun(1.0, 0.05), [1.0, 0.05]);
+        // Too much is seen, and an effect of the base may be anything.
+        assert_eq!(begun(drive.upper, drive.lower), [drive.upper, drive.lower]);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::as_read::{Other, Reading};
-use super::astray::elsewhere;
+use super::astray::{elsewhere, seen};
 use super::beam::{Climb, Search, Tell};
 use super::fit::{Fitter, best_setting};
 use super::found::{Found, IN_FULL};
@@ -315,7 +315,7 @@ impl<'a> Run<'a> {
             let (searched, more) = search.parted(base);
             let start = fit::identify(near, &searched, &everywhere, self.settings.seed);
             (self.tell)(&Event::BaseFitted { evaluations: start.evaluations });
-            let start = start.fit.model.within(family);
+            let start = seen(family, start.fit.model.within(family));
             let begun = base_of(&search, start.clone());
             let elsewhere = elsewhere(family, &start, &begun.model).into_iter();
             let held: Vec<Node> = elsewhere.map(|start| search.base_holding(start)).collect();
