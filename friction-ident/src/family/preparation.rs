@@ -176,8 +176,11 @@ impl Prepared {
             Self::from_raw(&raw, interval, (relative, smoother), recording.hold())
         };
         let prepared = at(relative, SMOOTHER.max(1.5 * relative))?;
+        if bandwidth.is_some() {
+            return Ok(prepared);
+        }
         // Beyond the bandwidth the velocity is noise, too: of coarse counts friction would turn with it.
-        let narrower = prepared.above_noise().filter(|_| bandwidth.is_none());
+        let narrower = prepared.above_noise();
         let narrower =
             narrower.and_then(|relative| at(relative, SMOOTHER / BANDWIDTH * relative).ok());
         Ok(narrower.unwrap_or(prepared))

@@ -42,6 +42,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         let sizes = parameters.zip(base.model.range(self.family, place));
         let sizes = sizes.filter(|(parameter, _)| parameter.role == Role::Amplitude);
         let left = |k: usize| (node.model.values[k] / base.model.values[k]).abs();
-        sizes.map(|(_, k)| left(k)).reduce(f64::max)
+        // Of a level of 0 nothing is left: 0/0 is no number, and `max` passes over it.
+        Some(sizes.map(|(_, k)| left(k)).fold(0.0, f64::max))
     }
 }

@@ -67,3 +67,15 @@ fn a_law_beside_what_it_is_a_law_of_is_an_effect() {
     assert_eq!(found.added, [BOTH]);
     assert!(found.remarks.is_empty(), "{:?}", found.remarks);
 }
+
+#[test]
+fn of_a_usual_effect_that_the_base_has_none_of_nothing_is_left() {
+    let mut plant = Plant::new(21, &[LAW]);
+    plant.laws = vec![(BOTH, WAVE)];
+    let mut search = search(&plant, narrow());
+    let mut climb = climb(&plant, Vec::new());
+    climb.base = node(&plant, &[(WAVE, &[0.0])]);
+    let last = |wave: f64| node(&plant, &[(WAVE, &[wave]), LAW]);
+    assert!(search.with_other_law(&climb, &last(0.0)).is_some());
+    assert!(search.with_other_law(&climb, &last(0.01)).is_none());
+}
