@@ -184,12 +184,13 @@ impl Effect for FrictionStep {
 
     /// To the next trials and to the middle between two, and halves of that: a fit feels where the step is no farther than
     /// it rises, and the first order errs where it is large. Over the gap between two pieces of a long recording, too.
-    fn leaps(&self) -> Option<(&'static str, &'static [f64])> {
+    fn other_valleys(&self, fitted: &[f64]) -> Vec<Vec<f64>> {
         const LEAPS: [f64; 14] = [
             -0.2, -0.15, -0.1, -0.05, -0.024, -0.012, -0.006, 0.006, 0.012, 0.024, 0.05, 0.1, 0.15,
             0.2,
         ];
-        Some(("u", &LEAPS))
+        let &[size, moment] = fitted else { return Vec::new() };
+        LEAPS.iter().map(|leap| vec![size, moment + leap]).collect()
     }
 
     fn friction_level(&self, p: Parameters<'_>, m: &Motion<'_>, level: &mut [f64]) {

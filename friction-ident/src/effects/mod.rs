@@ -185,9 +185,10 @@ pub trait Effect: Sync + Send {
         None
     }
 
-    /// A parameter whose valley is narrow, and how far beside a fit others are looked for.
-    fn leaps(&self) -> Option<(&'static str, &'static [f64])> {
-        None
+    /// Values beside those of a fit that may lie in a lower valley, where valleys are narrow: one for each parameter that
+    /// is fitted. Those beyond the limits of the search are left out.
+    fn other_valleys(&self, _fitted: &[f64]) -> Vec<Vec<f64>> {
+        Vec::new()
     }
 
     /// Whether every axis has it: the usual effects make the base model where nobody names one, and no challenge hides

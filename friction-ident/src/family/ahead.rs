@@ -46,6 +46,8 @@ const BESIDE: i32 = 3;
 pub(super) struct OneAhead {
     pub predictor: Predictor,
     instants: Vec<(f64, usize)>,
+    /// What each of them is worth.
+    worth: Vec<f64>,
     /// The responses that were asked for last.
     responses: Arc<Mutex<Vec<Responses>>>,
     /// A few pieces of it.
@@ -88,8 +90,8 @@ impl OneAhead {
     }
 
     fn whole(predictor: Predictor) -> Self {
-        let instants = predictor.instants();
-        Self { predictor, instants, responses: Arc::default(), part: None }
+        let (instants, worth) = (predictor.instants(), predictor.worth());
+        Self { predictor, instants, worth, responses: Arc::default(), part: None }
     }
 
     /// Responses to periodic disturbances: they do not depend on the model, so that those of the last settings are
@@ -221,6 +223,10 @@ impl Ahead for View<'_> {
 
     fn instants(&self) -> &[(f64, usize)] {
         &self.ahead.instants
+    }
+
+    fn worth(&self) -> Option<&[f64]> {
+        Some(&self.ahead.worth)
     }
 
     fn faults(&self) -> Option<Fault> {

@@ -47,17 +47,24 @@ impl FrictionFamily {
 
     /// The model in other valleys of its last term, if those are narrow.
     pub(super) fn beside(&self, model: &Fitted) -> Vec<Fitted> {
-        let leaps = |term: usize| Some((&self.terms[term].name, self.effect(term)?.leaps()?));
-        let Some((name, (parameter, distances))) = model.terms.last().and_then(|t| leaps(*t))
-        else {
+        let Some(last) = model.terms.len().checked_sub(1) else { return Vec::new() };
+        let (term, range) = (model.terms[last], model.range(self, last));
+        let valleys = |effect: &dyn Effect| effect.other_valleys(&model.values[range.clone()]);
+        let valleys = self.effect(term).map(valleys).unwrap_or_default();
+        if valleys.is_empty() {
             return self.other_second_bodies(model);
+        }
+        let within = |values: &Vec<f64>| {
+            let limits = values.iter().zip(&self.terms[term].parameters);
+            values.len() == range.len()
+                && limits.into_iter().all(|(v, p)| (p.lower..=p.upper).contains(v))
         };
-        let at = |distance: &f64| {
+        let at = |values: Vec<f64>| {
             let mut other = model.clone();
-            self.change(&mut other, name, parameter, |value| value + distance);
+            other.values[range.clone()].copy_from_slice(&values);
             other
         };
-        distances.iter().map(at).collect()
+        valleys.into_iter().filter(within).map(at).collect()
     }
 
     /// The effect that a term is a form of.

@@ -16,6 +16,7 @@ mod gain;
 mod missing;
 mod noise;
 mod response;
+mod rest;
 mod stale;
 mod strips;
 mod surrogate;
@@ -317,6 +318,12 @@ impl Predictor {
 
     fn piece(&self, sample: usize) -> usize {
         self.segments.partition_point(|segment| segment.end <= sample)
+    }
+
+    /// What each sample that counts is worth, at most 1: less where the position reads the same for long.
+    pub fn worth(&self) -> Vec<f64> {
+        let worth = rest::worth(&self.position, &self.segments);
+        self.counted.iter().map(|k| worth[*k]).collect()
     }
 
     /// What is known of the noise.

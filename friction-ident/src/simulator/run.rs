@@ -139,3 +139,21 @@ impl Trajectory {
         self.drive_force.push(force);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_longest_step_is_refused_that_is_none_or_by_which_no_simulation_ends() {
+        let refused = |duration, step| check_step(duration, step).is_err();
+        for step in [0.0, -1e-3, f64::NAN, f64::NEG_INFINITY] {
+            assert!(refused(1.0, step), "{step}");
+        }
+        // 10^11 steps are the most.
+        let cases = [(1.0, 0.1), (99.0, 1e-9), (1e20, 1e10), (0.0, 1e-300)];
+        assert!(cases.iter().all(|(duration, step)| !refused(*duration, *step)));
+        let cases = [(101.0, 1e-9), (1e-3, 1e-20), (1e20, 1e8), (f64::INFINITY, 1.0)];
+        assert!(cases.iter().all(|(duration, step)| refused(*duration, *step)));
+    }
+}

@@ -110,7 +110,7 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         let loss = |node: &Node, k: usize| statistics::loss(node.innovations[k] / scale);
         let mut sums = vec![0.0; self.blocks];
         for (k, block) in self.block.iter().enumerate() {
-            sums[*block] += (loss(a, k) - loss(b, k)) / correlation;
+            sums[*block] += self.worth(k) * (loss(a, k) - loss(b, k)) / correlation;
         }
         let nats = sums.iter().sum::<f64>() + cost;
         let each = cost / self.blocks.max(1) as f64;
@@ -120,6 +120,11 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         let mean = nats / self.blocks.max(1) as f64;
         let square: f64 = sums.iter().map(|sum| (sum - mean).powi(2)).sum();
         Difference { nats, error: square.sqrt(), ranks: signed_ranks(sums.into_iter()) }
+    }
+
+    /// What an error is worth.
+    fn worth(&self, k: usize) -> f64 {
+        self.ahead.worth().map_or(1.0, |worth| worth[k])
     }
 
     /// What its fitted parameters cost.
@@ -146,8 +151,10 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
 
     /// What one fold knows.
     fn part(&self, node: &Node, jacobian: &[Vec<f64>], fold: usize) -> Bowl {
+        // Squares are worth as much as errors are.
         let pick = |column: &[f64]| -> Vec<f64> {
-            column.iter().zip(&self.fold).filter(|(_, f)| **f == fold).map(|(v, _)| *v).collect()
+            let of_fold = self.fold.iter().enumerate().filter(|(_, f)| **f == fold);
+            of_fold.map(|(k, _)| self.worth(k).sqrt() * column[k]).collect()
         };
         let columns: Vec<Vec<f64>> = jacobian.iter().map(|column| pick(column)).collect();
         let all = Normal::of(&columns, &pick(&node.innovations), node.deviation);
@@ -211,6 +218,31 @@ mod tests {
         }
         // Where every block says the same there is no doubt.
         assert_eq!((p(1.0, 0.0), p(0.0, 0.0), p(-1.0, 0.0)), (0.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn an_error_counts_for_as_much_as_it_is_worth() {
+        let mut plant = Plant::new(2, &[(WAVE, &[WEAK])]);
+        let (base, wave) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
+        let fresh = |node: &Node| node.clone();
+        let whole = Comparison::new(&plant, &plant);
+        let (all, cost) = (whole.unfitted(&base, &wave), whole.cost(&fresh(&wave)));
+        plant.worth = Some(vec![0.25; base.errors.len()]);
+        let part = Comparison::new(&plant, &plant);
+        let (quarter, less) = (part.unfitted(&base, &wave), part.cost(&fresh(&wave)));
+        assert!((quarter.nats / all.nats - 0.25).abs() < 1e-12 && all.nats > 10.0);
+        // Parameters move as far by errors that are all worth as much; what is open of them is a ratio.
+        assert!((less.moved / cost.moved - 0.25).abs() < 0.02, "{less:?} {cost:?}");
+        assert!((less.open - cost.open).abs() < 0.1 * cost.open, "{less:?} {cost:?}");
+        // One half of the recording alone.
+        let half = base.errors.len() / 2;
+        let mut of = |first: f64| {
+            let worth = |k: usize| if k < half { first } else { 1.0 - first };
+            plant.worth = Some((0..base.errors.len()).map(worth).collect());
+            Comparison::new(&plant, &plant).unfitted(&base, &wave).nats
+        };
+        let sum = of(1.0) + of(0.0);
+        assert!((sum / all.nats - 1.0).abs() < 1e-12);
     }
 
     #[test]

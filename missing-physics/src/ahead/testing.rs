@@ -111,6 +111,10 @@ pub struct Plant {
     pub more_pieces: Option<(Box<Plant>, f64)>,
     /// The force that every model lacks.
     pub lacks: Option<Series>,
+    /// Whether effects have shares of what is missing.
+    pub shares: bool,
+    /// What each error is worth, if not 1.
+    pub worth: Option<Vec<f64>>,
 }
 
 fn about(name: &str, lower: f64, more: Option<TermParameter>) -> About {
@@ -202,6 +206,8 @@ impl Plant {
             pieces: None,
             more_pieces: None,
             lacks: None,
+            shares: true,
+            worth: None,
         }
     }
 
@@ -248,6 +254,12 @@ impl Ahead for Plant {
     }
     fn budget(&self) -> f64 {
         NOISE
+    }
+    fn has_shares(&self) -> bool {
+        self.shares
+    }
+    fn worth(&self) -> Option<&[f64]> {
+        self.worth.as_deref()
     }
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {
         let one = |(model, setting): &(Fitted, usize)| {

@@ -29,6 +29,12 @@ pub trait Ahead: Sync {
     /// Instants of the prediction errors, s, and the piece of the recording that each belongs to.
     fn instants(&self) -> &[(f64, usize)];
 
+    /// What each error is worth where models are compared, at most 1: less where a sensor says the same again. All are worth
+    /// 1 where nothing is said.
+    fn worth(&self) -> Option<&[f64]> {
+        None
+    }
+
     /// Share of the recording's errors that these are: where only a part of it is searched an effect gains as much less.
     fn share(&self) -> f64 {
         1.0

@@ -41,6 +41,12 @@ impl Effect for Harmonics {
         true
     }
 
+    /// What the plain form took for its wave is the first harmonic or the second one.
+    fn other_valleys(&self, fitted: &[f64]) -> Vec<Vec<f64>> {
+        let &[a, b, a_2, b_2, p] = fitted else { return Vec::new() };
+        vec![vec![0.0, 0.0, a, b, 2.0 * p], vec![a_2, b_2, 0.0, 0.0, 0.5 * p]]
+    }
+
     fn c_dynamics(&self) -> Option<CDynamics> {
         Some(CDynamics {
             shown: "{
@@ -125,6 +131,22 @@ mod tests {
             assert!((shown(2e-7, 0.0) - plain(2e-7, -1e-7, 2e-4)).abs() < 1e-17);
             let second = shown(2e-7, 1e-7) - shown(2e-7, 0.0);
             assert!((second - (plain(1e-7, 5e-8, 1e-4) - x)).abs() < 1e-17, "{x}");
+        }
+    }
+
+    #[test]
+    fn with_one_harmonic_alone_another_valley_shows_the_same() {
+        let shown = |p: &[f64]| {
+            let mut shown = [2.7e-5];
+            Harmonics.show(Parameters::new(p, 1), &mut shown);
+            shown[0]
+        };
+        for (fitted, valley) in
+            [([2e-7, -1e-7, 0.0, 0.0, 2e-4], 0), ([0.0, 0.0, 2e-7, -1e-7, 2e-4], 1)]
+        {
+            let valleys = Harmonics.other_valleys(&fitted);
+            assert_eq!(valleys[valley].last(), Some(&[4e-4, 1e-4][valley]));
+            assert!((shown(&valleys[valley]) - shown(&fitted)).abs() < 1e-17);
         }
     }
 }

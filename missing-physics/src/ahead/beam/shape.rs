@@ -92,7 +92,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
             }
         }
         if changed && !(self.stop)() {
-            let flexible = self.refit(&start, node.setting, STEPS.1);
+            let flexible = self.leapt(self.ahead, self.refit(&start, node.setting, STEPS.1));
             if self.comparison.compare(&best, &flexible).nats > FORM {
                 best = flexible;
             }

@@ -281,6 +281,7 @@ fn a_refused_set_that_goes_on_from_what_was_found_takes_it_back_where_it_does_th
     };
     assert_eq!(parts(0.02, 0.2), Some(vec![]), "the wave is the smaller part");
     assert_eq!(parts(0.2, 0.02), None);
+    assert_eq!(parts(0.1, 0.0995), None, "the greater part by a little");
     // Where nothing is left nothing is a part of something else.
     assert_eq!(parts(0.001, 0.002), None);
 }
@@ -303,4 +304,21 @@ fn what_does_more_alone_leaves_nothing_to_be_asked_one_by_one() {
     let mut search = super::search(&plant, narrow());
     let (kept, _) = search.needed_beside(&node(&plant, &[]), &last, &free, &rival);
     assert_eq!((kept, search.decisions.len()), (vec![PUSH, TONE], 0));
+}
+
+#[test]
+fn that_the_data_do_not_tell_what_makes_an_effect_that_effect_is_said_of_nothing_else() {
+    let plant = Plant::new(13, &[(WAVE, &[0.05])]);
+    let climb = climb(&plant, Vec::new());
+    let search = search(&plant, narrow());
+    let told = |refusal: &Refusal| {
+        let gain = Difference { nats: 100.0, error: 10.0, ranks: 3.0 };
+        search.unknown(&climb, &node(&plant, &[(WAVE, &[0.05])]), refusal, gain)
+    };
+    let parameter = "wave.size".to_owned();
+    let unknown =
+        Refusal::Unknown { parameter: parameter.clone(), low: 0.0, high: 1.0, unit: "V".into() };
+    let Some(Remains::Outdone { by, refusal, instead_of, nats }) = told(&unknown) else { panic!() };
+    assert_eq!((by, refusal, instead_of, nats), (vec!["wave".into()], unknown, vec![], 100.0));
+    assert_eq!(told(&Refusal::AtLimit { parameter }), None);
 }
