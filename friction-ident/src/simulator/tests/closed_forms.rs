@@ -161,3 +161,35 @@ fn input_that_makes_no_sense_is_refused() {
     assert_eq!(at(&[], &[], 1e-3), Ok(0));
     assert_eq!(at(&[0.0], &[0.0], 1e-3), Ok(1));
 }
+
+#[test]
+fn a_level_that_effects_take_below_zero_drives_nothing() {
+    let asymmetry: [(&str, f64); 2] = [("dF_C", -3.0), ("dF_v", 0.0)];
+    let model = plant(2.0, &[("coulomb", &[("F_C", 1.0)]), ("asymmetry", &asymmetry)]);
+    let last = |velocity: f64| {
+        run(&model, &times(500, 1e-3), Start::at(0.0, velocity), |_| 0.0).velocity[499]
+    };
+    // 1 - 3 N forth, 1 + 3 N back.
+    assert_eq!(last(0.4), 0.4);
+    assert!((last(-1.1) + 1.1 - 2.0 * 0.499).abs() < 1e-9);
+}
+
+#[test]
+fn a_mass_that_moves_within_its_contact_does_not_slide() {
+    let free = plant(2.0, &[("coulomb", &[("F_C", 1.0)])]);
+    let elastic = free.clone().with("presliding", &[("k_t", 1e6)]).unwrap();
+    let slides = |model: &Model, velocity: f64, used: f64| {
+        let mut plants = Plants::uniform(model, 2).watched();
+        plants.start(1, &Start { used, ..Start::at(0.0, velocity) });
+        plants.sliding().to_vec()
+    };
+    for (model, velocity, used, expected) in [
+        (&free, 0.1, 0.0, 1.0),
+        (&free, 0.0, 0.0, 0.0),
+        (&elastic, 0.1, 0.5, 0.0),
+        (&elastic, -0.1, -1.0, 1.0),
+        (&elastic, 0.0, 1.0, 0.0),
+    ] {
+        assert_eq!(slides(model, velocity, used), [0.0, expected], "{velocity} {used}");
+    }
+}
