@@ -143,6 +143,12 @@ fn a_plant_that_runs_away_stops_with_time_and_effect() {
     let input = Input::new(&time, &force, Hold::ZeroOrder);
     let error = simulate(&model, &input, &Start::default()).unwrap_err();
     assert!(matches!(&error, SimulationError::NotFinite { effect, .. } if effect == "spring"));
+    // The moment is the first one at which it is nowhere.
+    let force = [0.0, 0.0, 0.0, 1e308, 0.0, 0.0];
+    let input = Input::new(&time[..6], &force, Hold::ZeroOrder);
+    let error = simulate(&plant(1e-6, &[]), &input, &Start::default()).unwrap_err();
+    let expected = SimulationError::NotFinite { time: time[4], effect: "the mass".into() };
+    assert_eq!(error, expected);
 }
 
 #[test]
@@ -157,7 +163,12 @@ fn input_that_makes_no_sense_is_refused() {
         at(&[0.0, 0.0], &[0.0; 2], 1e-3),
         Err(SimulationError::Time { index: 1, .. })
     ));
+    for time in [[f64::NAN, 1.0], [0.0, f64::INFINITY], [0.0, f64::NAN]] {
+        assert!(matches!(at(&time, &[0.0; 2], 1e-3), Err(SimulationError::Time { index: 1, .. })));
+    }
     assert!(matches!(at(&[0.0, 1.0], &[0.0; 2], 0.0), Err(SimulationError::Setting { .. })));
+    // How late a recording begins does not make it longer.
+    assert_eq!(at(&[1e9, 1e9 + 0.5], &[0.0; 2], 1e-3), Ok(2));
     assert_eq!(at(&[], &[], 1e-3), Ok(0));
     assert_eq!(at(&[0.0], &[0.0], 1e-3), Ok(1));
 }
