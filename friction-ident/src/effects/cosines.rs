@@ -1,32 +1,8 @@
 //! Sums of cosines along the stroke, `sum_{k=1..n} c_k cos(k pi u)`, `u` from 0 at its begin to 1 at its end: parameters
 //! `c_1 .. c_n`, begin and end. Level beyond both ends.
 
-use super::{Parameter, Parameters};
+use super::Parameters;
 use crate::simd::{sin_cos_of_turns, vectorised};
-
-/// Names of the amplitudes.
-const NAMES: [&str; 20] = [
-    "c_1", "c_2", "c_3", "c_4", "c_5", "c_6", "c_7", "c_8", "c_9", "c_10", "c_11", "c_12", "c_13",
-    "c_14", "c_15", "c_16", "c_17", "c_18", "c_19", "c_20",
-];
-
-/// The amplitudes of as many cosines as there is room for before `last`: like `each`, whose default is that of the first.
-pub(super) const fn parameters<const LAST: usize, const ALL: usize>(
-    each: Parameter,
-    last: [Parameter; LAST],
-) -> [Parameter; ALL] {
-    let mut parameters = [each; ALL];
-    let mut k = 0;
-    while k < ALL {
-        parameters[k] = if k + LAST < ALL {
-            Parameter { name: NAMES[k], default: if k == 0 { each.default } else { 0.0 }, ..each }
-        } else {
-            last[k + LAST - ALL]
-        };
-        k += 1;
-    }
-    parameters
-}
 
 /// Lanes that are computed side by side.
 const WIDTH: usize = 8;

@@ -336,7 +336,7 @@ pub static ALL: &[&dyn Effect] = &[
     &load_friction::LOAD_FRICTION,
     &drift::Drift,
     &shear_thinning::SHEAR_THINNING,
-    &viscous_stroke::VISCOUS_STROKE,
+    &viscous_stroke::ViscousStroke,
     &actuator_lag::ActuatorLag,
     &input_delay::InputDelay,
     &saturation::Saturation,

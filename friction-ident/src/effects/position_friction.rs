@@ -21,11 +21,34 @@ pub static POSITION_FRICTION: PositionFriction<MAIN> = PositionFriction;
 static FINE: PositionFriction<DETAILED> = PositionFriction;
 static FORMS: [&dyn Effect; 1] = [&FINE];
 
+const NAMES: [&str; DETAILED] = [
+    "c_1", "c_2", "c_3", "c_4", "c_5", "c_6", "c_7", "c_8", "c_9", "c_10", "c_11", "c_12", "c_13",
+    "c_14", "c_15", "c_16", "c_17", "c_18", "c_19", "c_20",
+];
+
 const fn amplitude(name: &'static str, meaning: &'static str, default: f64) -> Parameter {
     Parameter::signed(name, meaning, Quantity::Force, 100.0, default)
 }
 
-const COSINE: Parameter = amplitude("c_1", "amplitude of cos(k pi u)", 1.0);
+/// The amplitudes of the cosines, then `last`.
+const fn parameters<const LAST: usize, const ALL: usize>(
+    last: [Parameter; LAST],
+) -> [Parameter; ALL] {
+    let mut parameters = [last[0]; ALL];
+    let mut k = 0;
+    while k < ALL {
+        parameters[k] = if k + LAST < ALL {
+            amplitude(NAMES[k], "amplitude of cos(k pi u)", if k == 0 { 1.0 } else { 0.0 })
+        } else {
+            last[k + LAST - ALL]
+        };
+        k += 1;
+    }
+    parameters
+}
+
+const START: Parameter = STROKE[0];
+const END: Parameter = STROKE[1];
 const SHOWS: &str = "(residual x sign of velocity) against position";
 const REFERENCE: &str =
     "M. R. Popovic, A. A. Goldenberg, IEEE Trans. Robotics and Automation 14, 1998";
@@ -34,7 +57,7 @@ static ABOUT: About = About {
     name: "position-friction",
     title: "friction along the stroke",
     equation: "sum_{k=1..6} c_k cos(k pi u) s, u = (x - start)/(end - start) within 0..1",
-    parameters: &cosines::parameters::<2, { MAIN + 2 }>(COSINE, STROKE),
+    parameters: &parameters::<2, { MAIN + 2 }>([START, END]),
     slots: &[Slot::FrictionLevel],
     shows: SHOWS,
     reference: REFERENCE,
@@ -44,15 +67,12 @@ static FINE_ABOUT: About = About {
     title: "friction along the stroke, in detail",
     equation: "(sum_{k=1..20} c_k cos(k pi u) + p_1 (u - 1/2) + p_2 (u^2 - u + 1/6)) s, \
                u = (x - start)/(end - start) within 0..1",
-    parameters: &cosines::parameters::<4, { DETAILED + 4 }>(
-        COSINE,
-        [
-            STROKE[0],
-            STROKE[1],
-            amplitude("p_1", "mean slope along the stroke", 0.0),
-            amplitude("p_2", "bend along the stroke", 0.0),
-        ],
-    ),
+    parameters: &parameters::<4, { DETAILED + 4 }>([
+        START,
+        END,
+        amplitude("p_1", "mean slope along the stroke", 0.0),
+        amplitude("p_2", "bend along the stroke", 0.0),
+    ]),
     slots: &[Slot::FrictionLevel],
     shows: SHOWS,
     reference: REFERENCE,

@@ -161,9 +161,6 @@ impl Part {
                 ..along_stroke()
             },
             "viscous-stroke" => Self { smooth: format!("({})*v", cosines(6)), ..along_stroke() },
-            "viscous-stroke:fine" => {
-                Self { smooth: format!("({})*v", cosines(20)), ..along_stroke() }
-            }
             "stribeck" => hump("{v_s}^2/({v_s}^2 + @w^2)"),
             "stribeck:gaussian" => hump("exp(-(@w/{v_s})^2)"),
             "stribeck:exponential" => hump("exp(-abs(@w/{v_s})^{delta})"),
