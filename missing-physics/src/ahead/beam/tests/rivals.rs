@@ -281,7 +281,19 @@ fn a_refused_set_that_goes_on_from_what_was_found_takes_it_back_where_it_does_th
     };
     assert_eq!(parts(0.02, 0.2), Some(vec![]), "the wave is the smaller part");
     assert_eq!(parts(0.2, 0.02), None);
-    assert_eq!(parts(0.1, 0.0995), None, "the greater part by a little");
+    // As large as the other part, and a little more.
+    let balance = |beat: f64| {
+        let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.1]), (BEAT, &[beat])];
+        let plant = Plant::new(16, &hidden);
+        let square = |count: usize| node(&plant, &hidden[..count]).scale.powi(2);
+        2.0 * square(1) - square(2) - square(0)
+    };
+    let even = (0..40).fold((0.01, 1.0), |(low, high), _| {
+        let middle = 0.5 * (low + high);
+        if balance(middle) < 0.0 { (middle, high) } else { (low, middle) }
+    });
+    assert_eq!(parts(0.1, 0.99 * even.0), None);
+    assert_eq!(parts(0.1, 1.01 * even.0), Some(vec![]));
     // Where nothing is left nothing is a part of something else.
     assert_eq!(parts(0.001, 0.002), None);
 }
