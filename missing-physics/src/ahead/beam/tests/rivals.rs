@@ -292,8 +292,8 @@ fn a_refused_set_that_goes_on_from_what_was_found_takes_it_back_where_it_does_th
         let middle = 0.5 * (low + high);
         if balance(middle) < 0.0 { (middle, high) } else { (low, middle) }
     });
-    assert_eq!(parts(0.1, 0.99 * even.0), None);
-    assert_eq!(parts(0.1, 1.01 * even.0), Some(vec![]));
+    assert_eq!(parts(0.1, 0.9999 * even.0), None);
+    assert_eq!(parts(0.1, 1.0001 * even.0), Some(vec![]));
     // Where nothing is left nothing is a part of something else.
     assert_eq!(parts(0.001, 0.002), None);
 }
