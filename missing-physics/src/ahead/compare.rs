@@ -95,22 +95,24 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
             cost.open + cost.moved * node.correlation() / better(a, b).correlation()
         };
         // A part stands for a recording that gains so many times as much, and costs no more.
-        self.beyond(a, b, self.ahead.share() * (cost(a) - cost(b)))
+        self.beyond(a, b, self.ahead.share() * (cost(a) - cost(b)), |k| self.worth(k))
     }
 
-    /// The same of two models that were not fitted to this recording: nothing is held out.
+    /// The same of two models that were not fitted to this recording: nothing is held out, and none has followed at which
+    /// fraction of a count an axis stopped.
     pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
-        self.beyond(a, b, 0.0)
+        self.beyond(a, b, 0.0, |_| 1.0)
     }
 
-    /// How much better `b` predicts than `a` where the parameters of `a` cost so much more, which every block bears alike.
-    fn beyond(&self, a: &Node, b: &Node, cost: f64) -> Difference {
+    /// How much better `b` predicts than `a` where the parameters of `a` cost so much more, which every block bears alike, and
+    /// an error is worth so much.
+    fn beyond(&self, a: &Node, b: &Node, cost: f64, worth: impl Fn(usize) -> f64) -> Difference {
         let better = better(a, b);
         let (scale, correlation) = (better.deviation, better.correlation());
         let loss = |node: &Node, k: usize| statistics::loss(node.innovations[k] / scale);
         let mut sums = vec![0.0; self.blocks];
         for (k, block) in self.block.iter().enumerate() {
-            sums[*block] += self.worth(k) * (loss(a, k) - loss(b, k)) / correlation;
+            sums[*block] += worth(k) * (loss(a, k) - loss(b, k)) / correlation;
         }
         let nats = sums.iter().sum::<f64>() + cost;
         let each = cost / self.blocks.max(1) as f64;
@@ -225,24 +227,27 @@ mod tests {
         let mut plant = Plant::new(2, &[(WAVE, &[WEAK])]);
         let (base, wave) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
         let fresh = |node: &Node| node.clone();
-        let whole = Comparison::new(&plant, &plant);
-        let (all, cost) = (whole.unfitted(&base, &wave), whole.cost(&fresh(&wave)));
+        let of = |plant: &Plant| {
+            let comparison = Comparison::new(plant, plant);
+            let gain = comparison.beyond(&base, &wave, 0.0, |k| comparison.worth(k)).nats;
+            (gain, comparison.cost(&wave), comparison.unfitted(&base, &wave))
+        };
+        let (all, cost, unfitted) = of(&plant);
         plant.worth = Some(vec![0.25; base.errors.len()]);
-        let part = Comparison::new(&plant, &plant);
-        let (quarter, less) = (part.unfitted(&base, &wave), part.cost(&fresh(&wave)));
-        assert!((quarter.nats / all.nats - 0.25).abs() < 1e-12 && all.nats > 10.0);
+        let (quarter, less, same) = of(&plant);
+        assert!((quarter / all - 0.25).abs() < 1e-12 && all > 10.0);
+        assert_eq!((unfitted.nats, same), (all, unfitted));
         // Parameters move as far by errors that are all worth as much; what is open of them is a ratio.
         assert!((less.moved / cost.moved - 0.25).abs() < 0.02, "{less:?} {cost:?}");
         assert!((less.open - cost.open).abs() < 0.1 * cost.open, "{less:?} {cost:?}");
-        // One half of the recording alone.
+        // Either half of the recording alone.
         let half = base.errors.len() / 2;
-        let mut of = |first: f64| {
+        let halves = [1.0, 0.0].map(|first| {
             let worth = |k: usize| if k < half { first } else { 1.0 - first };
             plant.worth = Some((0..base.errors.len()).map(worth).collect());
-            Comparison::new(&plant, &plant).unfitted(&base, &wave).nats
-        };
-        let sum = of(1.0) + of(0.0);
-        assert!((sum / all.nats - 1.0).abs() < 1e-12);
+            of(&plant).0
+        });
+        assert!((halves.iter().sum::<f64>() / all - 1.0).abs() < 1e-12);
     }
 
     #[test]
