@@ -226,7 +226,6 @@ mod tests {
     fn an_error_counts_for_as_much_as_it_is_worth() {
         let mut plant = Plant::new(2, &[(WAVE, &[WEAK])]);
         let (base, wave) = (fitted(&plant, &[]), fitted(&plant, &[WAVE]));
-        let fresh = |node: &Node| node.clone();
         let of = |plant: &Plant| {
             let comparison = Comparison::new(plant, plant);
             let gain = comparison.beyond(&base, &wave, 0.0, |k| comparison.worth(k)).nats;
