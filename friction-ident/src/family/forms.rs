@@ -54,10 +54,10 @@ impl FrictionFamily {
         if valleys.is_empty() {
             return self.other_second_bodies(model);
         }
+        let parameters = &self.terms[term].parameters;
         let within = |values: &Vec<f64>| {
-            let limits = values.iter().zip(&self.terms[term].parameters);
-            values.len() == range.len()
-                && limits.into_iter().all(|(v, p)| (p.lower..=p.upper).contains(v))
+            values.len() == parameters.len()
+                && values.iter().zip(parameters).all(|(v, p)| (p.lower..=p.upper).contains(v))
         };
         let at = |values: Vec<f64>| {
             let mut other = model.clone();
@@ -190,5 +190,22 @@ mod tests {
         assert_eq!(hump.terms, [0, coulomb, of("stribeck")]);
         assert_eq!(family.value(&hump, "stribeck", "dF"), Some(3.0));
         assert_eq!(family.value(&hump, "coulomb", "F_C"), Some(9.5));
+    }
+
+    #[test]
+    fn valleys_within_the_limits_of_the_search_are_looked_at_and_those_beyond_are_not() {
+        let family = FrictionFamily::new(&recording(), &Options::default()).unwrap();
+        let of = |name: &str| family.terms.iter().position(|term| term.name == name).unwrap();
+        let (coulomb, encoder) = (of("coulomb"), of("encoder:harmonics"));
+        let base = Fitted { terms: vec![0, coulomb], values: vec![20.0, 8.0] };
+        let longest = family.terms[encoder].parameters.last().unwrap().upper;
+        let valleys = |period: f64| {
+            let fitted = base.with(encoder, &[2e-5, 1e-5, 3e-6, -1e-6, period]);
+            family.beside(&fitted).into_iter().map(|model| model.values).collect::<Vec<_>>()
+        };
+        let half = vec![20.0, 8.0, 3e-6, -1e-6, 0.0, 0.0, 0.35 * longest];
+        assert_eq!(valleys(0.7 * longest), [half]);
+        assert_eq!(valleys(0.4 * longest)[0], [20.0, 8.0, 0.0, 0.0, 2e-5, 1e-5, 0.8 * longest]);
+        assert!(family.beside(&base).is_empty() && family.beside(&Fitted::default()).is_empty());
     }
 }

@@ -98,8 +98,8 @@ impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
         self.beyond(a, b, self.ahead.share() * (cost(a) - cost(b)), |k| self.worth(k))
     }
 
-    /// The same of two models that were not fitted to this recording: nothing is held out, and none has followed at which
-    /// fraction of a count an axis stopped.
+    /// The same of two models as their errors stand: nothing is held out, and every error counts. Of those that were not fitted
+    /// to this recording none has followed at which fraction of a count an axis stopped.
     pub fn unfitted(&self, a: &Node, b: &Node) -> Difference {
         self.beyond(a, b, 0.0, |_| 1.0)
     }

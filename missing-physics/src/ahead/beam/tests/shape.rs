@@ -59,6 +59,16 @@ fn the_way_to_a_lower_valley_is_gone_on_a_part_and_its_end_on_all() {
 }
 
 #[test]
+fn a_flexible_form_goes_on_to_a_lower_valley() {
+    let mut plant = Plant::new(3, &[(BENT, &[0.05, 0.05]), (TONE, &[0.05, TONES[1]])]);
+    plant.leaps = vec![TONES[1]];
+    let shaped = search(&plant, narrow())
+        .shaped(&node(&plant, &[(WAVE, &[0.05]), (TONE, &[0.05, TONES[0]])]));
+    assert_eq!(shaped.effects(&plant), [BENT, TONE]);
+    assert!((omega(&shaped) / TONES[1] - 1.0).abs() < 0.01, "{}", omega(&shaped));
+}
+
+#[test]
 fn a_flexible_form_stands_where_it_gains_enough_and_not_where_it_gains_less() {
     // A bend so small that it gains something, and less than a form must.
     for (bend, gained, expected) in [(0.05, true, BENT), (0.0001, true, WAVE), (0.0, false, WAVE)] {
