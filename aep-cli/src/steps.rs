@@ -28,6 +28,19 @@ pub fn family(
     Ok(FrictionFamily::new(&used, &options(bandwidth, known))?)
 }
 
+/// The model family in which a recording is searched; what is shown of it is compared below `bandwidth`, Hz.
+pub fn searched(
+    recording: &Recording,
+    bandwidth: Option<f64>,
+    known: &Known,
+) -> Result<FrictionFamily, Failure> {
+    let family = family(recording, None, known)?;
+    match bandwidth {
+        Some(bandwidth) => Ok(family.shown_below(bandwidth)?),
+        None => Ok(family),
+    }
+}
+
 /// The models of a ladder.
 pub fn ladder(family: &FrictionFamily, discovery: &Discovery) -> Result<Vec<Fitted>, Failure> {
     discovery.ladder.iter().map(|rung| Ok(model_of(family, rung)?)).collect()

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use friction_ident::family::FrictionFamily;
+use friction_ident::family::{FrictionFamily, Options};
 use missing_physics::report::Confirmed;
-use missing_physics::{Discovery, confirm};
+use missing_physics::{Discovery, ModelFamily, confirm};
 use pyo3::prelude::*;
 
 use crate::failure::bad_input;
 use crate::found::Found;
 use crate::reading::Data;
-use crate::search::{Happening, Search, Sends, family};
+use crate::search::{Happening, Search, Sends, searched};
 use crate::watched::watched;
 
 /// Searches data for what the base model lacks; `validate` are recordings to confirm it on, `surrogates` how many surrogates
@@ -29,8 +29,9 @@ pub fn discover(
     let given = data.get();
     let settings = search.settings(given, &stop)?;
     let options = search.options(given, None)?;
+    let own = Options { bandwidth: None, ..options.clone() };
     let work = |events| -> PyResult<(FrictionFamily, Discovery)> {
-        let family = family(given, &options)?;
+        let family = searched(given, &options)?;
         if surrogates > 0 && family.is_beside() {
             return Err(bad_input(
                 "surrogates are simulated, but beside model_force there is no mass of ours\n  leave surrogates out",
@@ -41,7 +42,7 @@ pub fn discover(
         let go_on = || !stop.load(Ordering::Relaxed);
         if let Some(other) = validate.as_ref().filter(|_| go_on()) {
             let recording = other.get().loaded.recording.name().to_owned();
-            let other = crate::search::family(other.get(), &options)?.with_stroke_of(&family);
+            let other = searched(other.get(), &options)?.with_stroke_of(&family);
             if (family.axis(), family.effort()) != (other.axis(), other.effort()) {
                 return Err(bad_input(
                     "the recordings are not of one kind of axis, or their forces not in one unit\n  \
@@ -54,7 +55,7 @@ pub fn discover(
         if let Some(last) = discovery.ladder.last().filter(|_| surrogates > 0 && go_on()) {
             let model = family.plant(last).map_err(bad_input)?;
             let found = family
-                .false_alarms(&model, (&settings, &options), surrogates, |_| go_on())
+                .false_alarms(&model, (&settings, &own), surrogates, |_| go_on())
                 .map_err(bad_input)?;
             discovery.surrogates = Some(found);
         }
@@ -66,6 +67,6 @@ pub fn discover(
     };
     let (found, raised) = watched(py, &stop, work, hear)?;
     let (family, discovery) = found?;
-    let found = py.detach(|| Found::discovery(data, family, discovery, settings.thresholds))?;
+    let found = py.detach(|| Found::discovery(data, family.on_view().clone(), discovery, settings.thresholds))?;
     Ok((found, raised))
 }

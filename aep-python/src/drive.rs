@@ -8,14 +8,14 @@ use friction_ident::family::{Decides, ForeignModel, FrictionFamily, GivenModels,
 use friction_ident::simulator::free_run;
 use friction_ident::{Library, Model};
 use missing_physics::fit::{Fit, Until};
-use missing_physics::{Discovery, Extended};
+use missing_physics::{Discovery, Extended, ModelFamily};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::failure::{bad_input, keywords};
 use crate::found::Found;
 use crate::reading::Data;
-use crate::search::{Happening, Search, Sends, family, known};
+use crate::search::{Happening, Search, Sends, family, known, searched};
 use crate::watched::watched;
 
 /// Digits of a recorded number: far below noise and counts.
@@ -107,7 +107,7 @@ pub fn suggest(
     let settings = search.settings(given, &stop)?;
     let options = search.options(given, Some(model.known()))?;
     let work = |events| -> PyResult<(FrictionFamily, Discovery)> {
-        let family = family(given, &options)?;
+        let family = searched(given, &options)?;
         family.belongs(&model).map_err(|error| foreign(&error))?;
         let found = missing_physics::suggest(&family, &settings, &mut Sends(events));
         Ok((family, found.map_err(bad_input)?))
@@ -118,7 +118,7 @@ pub fn suggest(
     };
     let (found, raised) = watched(py, &stop, work, hear)?;
     let (family, discovery) = found?;
-    Ok((Found::discovery(data, family, discovery, settings.thresholds)?, raised))
+    Ok((Found::discovery(data, family.on_view().clone(), discovery, settings.thresholds)?, raised))
 }
 
 /// A model with one effect more, refitted: before and after.

@@ -143,6 +143,15 @@ pub fn family(data: &Data, options: &Options) -> PyResult<FrictionFamily> {
     })
 }
 
+/// The model family in which data are searched; what is shown of it is compared below the bandwidth of `options`.
+pub fn searched(data: &Data, options: &Options) -> PyResult<FrictionFamily> {
+    let found = family(data, &Options { bandwidth: None, ..options.clone() })?;
+    match options.bandwidth {
+        Some(bandwidth) => found.shown_below(bandwidth).map_err(bad_input),
+        None => Ok(found),
+    }
+}
+
 /// Names of effects that the library has.
 pub fn known(library: &Library, names: &[String]) -> PyResult<Vec<String>> {
     let names = names.iter().map(|name| {

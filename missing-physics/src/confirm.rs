@@ -79,6 +79,7 @@ fn one_ahead<F: ModelFamily + ?Sized>(
 
 /// The errors of a rung with the parameters of `model`.
 fn as_it_is<F: ModelFamily + ?Sized>(family: &F, rung: &Rung, model: Fitted) -> Confirmation {
+    let family = family.on_view();
     let fit = as_given(family, model);
     let points = family.target().len();
     let split = Split::new(points, family.blocks());

@@ -11,7 +11,7 @@ use aep_data::{Axes, Loaded};
 use aep_studio::words;
 use friction_ident::Known;
 use friction_ident::family::{Decides, FrictionFamily};
-use missing_physics::{Discovery, Fitted, Settings, Thresholds, discover, model_of};
+use missing_physics::{Discovery, Fitted, ModelFamily, Settings, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
 use missing_physics::report::{Combinations, Confirmed, Rung, Verdict};
 
@@ -46,8 +46,8 @@ pub struct Args {
     /// Write the last model
     #[arg(long, short = 'o', value_name = "MODEL.json")]
     output: Option<PathBuf>,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
-    /// position is noisy
+    /// Bandwidth in Hz below which forces are shown; by default 5 % of the sampling frequency, less
+    /// where the position is noisy. Beside --model-force it decides, too
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Other recordings of the same drive: does what was found hold there? Nothing is fitted to them but what belongs
@@ -154,7 +154,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let read = Instant::now();
     let known = args.known.known()?;
-    let family = Arc::new(steps::family(&loaded.recording, args.bandwidth, &known)?);
+    let family = Arc::new(steps::searched(&loaded.recording, args.bandwidth, &known)?);
     progress.say("fitting the base model");
     let settings = args.run.with_time_left(settings, begun, read);
     progress.within(settings.time_limit);
@@ -183,7 +183,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         && let Some(last) = discovery.ladder.last()
     {
         let model = family.plant(last)?;
-        let options = steps::options(args.bandwidth, &known);
+        let options = steps::options(None, &known);
         let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
             progress.say(format!("surrogate {} of {count}", k + 1));
@@ -210,7 +210,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         progress.say("drawing the report");
     }
     let models = steps::ladder(&family, &discovery)?;
-    let samples = args.results.samples(&family, &models, Decides::Prediction);
+    let samples = args.results.samples(family.on_view(), &models, Decides::Prediction);
     drop(progress);
     let report = Report {
         kind: Kind::Discovery,
@@ -245,7 +245,7 @@ fn confirmed(
     (bandwidth, known): &(Option<f64>, Known),
     settings: &Settings<'_>,
 ) -> Result<Confirmed, Failure> {
-    let other = steps::family(&others.recording, *bandwidth, known)?.with_stroke_of(family);
+    let other = steps::searched(&others.recording, *bandwidth, known)?.with_stroke_of(family);
     steps::same_axes(family, &other)?;
     let rungs = missing_physics::confirm(&other, ladder, settings)?;
     Ok(Confirmed { recording: others.recording.name().to_owned(), rungs })
@@ -267,7 +267,7 @@ fn save_model(
 /// What parameters of the last model make together.
 fn friction(family: &FrictionFamily, discovery: &Discovery) -> Result<Combinations, Failure> {
     let Some(last) = discovery.ladder.last() else { return Ok(Combinations::default()) };
-    Ok(family.friction(&model_of(family, last)?, Decides::Prediction))
+    Ok(family.on_view().friction(&model_of(family, last)?, Decides::Prediction))
 }
 
 /// Writes every rung point by point; returns what to tell the user.
@@ -278,7 +278,7 @@ fn save_series(
 ) -> Result<String, Failure> {
     let names = discovery.ladder.iter().enumerate().map(|(k, rung)| rung.label(k));
     let rungs: Vec<(String, Fitted)> = names.zip(steps::ladder(family, discovery)?).collect();
-    series::save(path, family, &rungs, Decides::Prediction)
+    series::save(path, family.on_view(), &rungs, Decides::Prediction)
 }
 
 /// The loop as it went: where the base model failed, what was tried, what was gained.

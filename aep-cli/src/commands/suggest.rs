@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use aep_studio::words;
 use friction_ident::family::Decides;
-use missing_physics::{likely, suggest};
+use missing_physics::{ModelFamily, likely, suggest};
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
 
@@ -37,8 +37,8 @@ pub struct Args {
     /// The model, as written by identify, extend or discover
     #[arg(long, value_name = "MODEL.json", required_unless_present = "model_force")]
     model: Option<PathBuf>,
-    /// Bandwidth of the comparison in Hz; by default 5 % of the sampling frequency, less where the
-    /// position is noisy
+    /// Bandwidth in Hz below which forces are shown; by default 5 % of the sampling frequency, less
+    /// where the position is noisy. Beside --model-force it decides, too
     #[arg(long, value_name = "HZ", value_parser = super::positive)]
     bandwidth: Option<f64>,
     /// Where several effects are likely: write a motion that tells them apart (time and position)
@@ -79,7 +79,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
     progress.say("preparing the motion");
     let read = Instant::now();
     let known = args.known.known()?.or(model.known());
-    let family = Arc::new(steps::family(&loaded.recording, args.bandwidth, &known)?);
+    let family = Arc::new(steps::searched(&loaded.recording, args.bandwidth, &known)?);
     family.belongs(&model)?;
     if args.experiment.is_some() {
         steps::needs_plant(&family)?;
@@ -98,7 +98,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         proposal = propose(&family, (settings.base.clone(), rivals), path, args.run.seed)?;
     }
     drop(progress);
-    let samples = args.results.samples(&family, &steps::ladder(&family, &discovery)?, Decides::Prediction);
+    let samples = args.results.samples(family.on_view(), &steps::ladder(&family, &discovery)?, Decides::Prediction);
     let data = check(&loaded.recording);
     let more = proposal.more;
     let report = Report {

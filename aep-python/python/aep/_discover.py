@@ -147,7 +147,7 @@ def discover(
         How many surrogates are searched for false alarms on this very axis.
     seed, alpha, time_limit, thresholds, bandwidth
         As the flags of the command: ``time_limit`` in s, None for no limit; ``thresholds`` by their names in
-        docs/decisions.md (``better``, ``chance``, ``beam``, ...); ``bandwidth`` in Hz.
+        docs/decisions.md (``better``, ``chance``, ``beam``, ...); ``bandwidth`` in Hz, of what is shown.
     progress
         Called while it runs with ``stage`` (``base-fitted``, ``screening``, ``compared``, ``concluding``,
         ``finishing``) and its numbers; or a bar such as ``tqdm.tqdm()``, which is moved on by one at each and told what it is.

@@ -39,8 +39,8 @@ static ABOUT: About = About {
     title: "periodic error of the encoder (sub-division, eccentricity)",
     equation: "x + a sin(2 pi x/p) + b cos(2 pi x/p) is shown",
     parameters: &[
-        Parameter::signed("a", "sine amplitude", Quantity::Length, 5e-3, 1e-6),
-        Parameter::signed("b", "cosine amplitude", Quantity::Length, 5e-3, 1e-6),
+        Parameter::signed("a", "sine amplitude", Quantity::Length, 0.1, 1e-6),
+        Parameter::signed("b", "cosine amplitude", Quantity::Length, 0.1, 1e-6),
         PERIOD,
     ],
     slots: &[Slot::Sensor],

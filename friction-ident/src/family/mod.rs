@@ -26,6 +26,7 @@ mod points;
 mod preparation;
 mod regimes;
 mod samples;
+mod on_view;
 mod smoothed;
 mod surrogates;
 mod sweep;
@@ -100,6 +101,8 @@ pub struct FrictionFamily {
     stroke: (f64, f64),
     hold: Option<HoldChoice>,
     other_hold: Option<Box<Self>>,
+    /// The same with the bandwidth that is shown, where that is another than a search's.
+    on_view: Option<Box<Self>>,
     /// The cut-off below which its force was taken, Hz.
     smoothing: Option<f64>,
     /// The same recording with the noise of its force smoothed away.
@@ -181,6 +184,7 @@ impl FrictionFamily {
             stroke,
             hold: None,
             other_hold: None,
+            on_view: None,
             smoothing: None,
             filtered: smoothed::Filtered::default(),
             part: None,
@@ -215,6 +219,7 @@ impl FrictionFamily {
     pub fn with_stroke_of(mut self, other: &Self) -> Self {
         self.stroke = other.stroke;
         self.top_speed = other.top_speed;
+        self.on_view = self.on_view.map(|shown| Box::new(shown.with_stroke_of(other)));
         self
     }
 
@@ -522,6 +527,10 @@ impl FrictionFamily {
 impl ModelFamily for FrictionFamily {
     fn terms(&self) -> &[Term] {
         &self.terms
+    }
+
+    fn on_view(&self) -> &Self {
+        self.on_view.as_deref().unwrap_or(self)
     }
 
     fn quantity(&self) -> ComparedQuantity {

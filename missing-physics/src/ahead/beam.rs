@@ -255,7 +255,8 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                     let (size, cost) = (costs.len() - 1, negative(*cost));
                     let because = Some(Reason::Refused { refusal });
                     self.note(size, without, &last, cost, Outcome::NotIdentifiable, because);
-                    best = self.what_is_left(&climb, without);
+                    let left = self.what_is_left(&climb, without);
+                    best = self.best_of_its_size(&climb, left);
                     continue;
                 }
             }

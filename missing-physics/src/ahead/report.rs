@@ -38,7 +38,7 @@ pub struct Report<'a, F: ModelFamily + ?Sized> {
 impl<F: ModelFamily + ?Sized> Report<'_, F> {
     /// All that is told.
     pub fn discovery(self) -> Discovery {
-        let family = self.family;
+        let family = self.family.on_view();
         let points = family.target().len();
         let split = Split::new(points, family.blocks());
         let as_fit = |node: &Node| fit::evaluate(family, node.model.clone(), &vec![1.0; points]);
@@ -125,9 +125,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     /// The force that a model lacks, and its shares by regime; where nothing is known of it those of the error.
     fn lacks(&self, node: &Node, fit: &Fit) -> (Option<MissingForce>, Vec<RegimeShare>) {
         let series = node.missing_force(self.ahead);
-        match series.and_then(|series| MissingForce::of(self.family, series)) {
+        match series.and_then(|series| MissingForce::of(self.family.on_view(), series)) {
             Some((missing, regimes)) => (Some(missing), regimes),
-            None => (None, where_it_fails::regimes(self.family, &fit.residual)),
+            None => (None, where_it_fails::regimes(self.family.on_view(), &fit.residual)),
         }
     }
 
@@ -135,8 +135,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     fn generic_term(&self, places: &[crate::report::Where], residual: &[f64]) -> Option<String> {
         let place = places.iter().find(|place| place.is_structure())?;
         let named = |c: &&crate::family::Coordinate| c.name == place.coordinate;
-        let coordinate = self.family.coordinates().iter().find(named)?;
-        self.family.generic_term(coordinate, &generic::shape(coordinate, residual))
+        let family = self.family.on_view();
+        let coordinate = family.coordinates().iter().find(named)?;
+        family.generic_term(coordinate, &generic::shape(coordinate, residual))
     }
 
     fn names(&self, terms: &[usize]) -> Vec<String> {
@@ -286,9 +287,9 @@ pub fn rung<F: ModelFamily + ?Sized>(
         added: Vec::new(),
         effects: effects.map(|&t| terms[t].name.clone()).collect(),
         parameters: intervals::of((family, ahead), node),
-        error: diagnosis::errors(family, fit, split),
+        error: diagnosis::errors(family.on_view(), fit, split),
         p_value: None,
-        metrics: Some(SplitMetrics::of(&fit.residual, family.target(), split)),
+        metrics: Some(SplitMetrics::of(&fit.residual, family.on_view().target(), split)),
         likelihood_gain: None,
         budget: Some(node.scale / ahead.budget()).filter(|times| times.is_finite()),
     }

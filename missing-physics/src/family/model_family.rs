@@ -210,6 +210,11 @@ pub trait ModelFamily: Sync {
         shapes.par_iter().map(|shape| self.columns(model, prediction, term, shape)).collect()
     }
 
+    /// The same as people are shown it, where that is compared otherwise than what is searched. It has the same terms.
+    fn on_view(&self) -> &Self {
+        self
+    }
+
     /// What the residual may depend on.
     fn coordinates(&self) -> &[Coordinate] {
         &[]

@@ -11,7 +11,7 @@ use aep_studio::words::{self, AXES_HEADINGS, AxisResult, axis_row};
 use friction_ident::family::{Decides, explained};
 use missing_physics::measurement::check::{DataCheck, Severity, check};
 use missing_physics::report::{Combinations, Samples};
-use missing_physics::{Discovery, Thresholds, discover};
+use missing_physics::{Discovery, ModelFamily, Thresholds, discover};
 use serde_json::{Value, json};
 
 use super::{Args, confirmed, friction, save_model, save_series};
@@ -236,7 +236,7 @@ fn search(args: &Args, axis: &Axis, watch: Watch) -> Result<Searched, Failure> {
     let settings = args.run.settings(base)?;
     let begun = Instant::now();
     let how = (args.bandwidth, args.known.known()?);
-    let family = steps::family(recording, how.0, &how.1)?;
+    let family = steps::searched(recording, how.0, &how.1)?;
     let settings = args.run.with_time_left(settings, begun, begun);
     let mut discovery = discover(&family, &settings, &mut ())?;
     if let Some(others) = axis.others.as_ref().filter(|_| !watch.is_interrupted()) {
@@ -256,7 +256,7 @@ fn search(args: &Args, axis: &Axis, watch: Watch) -> Result<Searched, Failure> {
     };
     let json = report.json()?;
     let models = steps::ladder(&family, &discovery)?;
-    let samples = args.results.samples(&family, &models, Decides::Prediction);
+    let samples = args.results.samples(family.on_view(), &models, Decides::Prediction);
     let mut files = String::new();
     if let Some(path) = &args.output {
         files += &save_model(&family, &discovery, &axis_path(path, &axis.name))?;

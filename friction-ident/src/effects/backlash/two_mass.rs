@@ -33,7 +33,7 @@ static ABOUT: About = About {
             "k",
             "stiffness of the contact at its ends",
             Quantity::Stiffness,
-            (1e4, 1e9),
+            (1.0, 1e9),
             5e6,
         ),
         Parameter::shape("zeta", "damping ratio of the contact", Quantity::One, (1e-3, 2.0), 0.1),

@@ -12,7 +12,7 @@ use crate::simd::{sin_cos_of_turns, vectorised};
 pub struct Harmonics;
 
 const fn amplitude(name: &'static str, meaning: &'static str) -> Parameter {
-    Parameter::signed(name, meaning, Quantity::Length, 5e-3, 1e-6)
+    Parameter::signed(name, meaning, Quantity::Length, 0.1, 1e-6)
 }
 
 static ABOUT: About = About {

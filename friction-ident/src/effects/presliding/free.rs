@@ -37,7 +37,7 @@ static ABOUT: About = About {
     equation: "level sum_{i=0..4} q_i z_i + sigma_1 v (1 - s sum q_i z_i) instead of level s, z_i' = v/(d r_i) within \
                -1..1, r = 0.08, 0.2, 0.45, 0.9, 1.7, q ~ exp(w), w_3 = 0, sum q_i = 1",
     parameters: &[
-        Parameter::shape("d", "breakaway distance", Quantity::Length, (1e-7, 1e-2), 5e-6),
+        Parameter::shape("d", "breakaway distance", Quantity::Length, (1e-7, 0.1), 5e-6),
         weight("w_0"),
         weight("w_1"),
         weight("w_2"),

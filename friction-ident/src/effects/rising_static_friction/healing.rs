@@ -31,7 +31,7 @@ static ABOUT: About = About {
             "D_c",
             "way over which it wears off, but for 1/e",
             Quantity::Length,
-            (1e-7, 1e-3),
+            (1e-7, 0.1),
             3e-5,
         ),
         Parameter::shape(

@@ -77,9 +77,10 @@ impl<'a, F: ModelFamily + ?Sized> ByHand<'a, F> {
 
     /// What is told of a model that has `added` beyond the one `below`.
     pub fn rung(&self, below: Option<&Node>, node: &Node, added: &[String]) -> Rung {
-        let points = self.family.target().len();
-        let split = Split::new(points, self.family.blocks());
-        let fit = crate::fit::evaluate(self.family, node.model.clone(), &vec![1.0; points]);
+        let shown = self.family.on_view();
+        let points = shown.target().len();
+        let split = Split::new(points, shown.blocks());
+        let fit = crate::fit::evaluate(shown, node.model.clone(), &vec![1.0; points]);
         let comparison = Comparison::new(self.family, &*self.whole);
         let gain = below.map(|below| comparison.compare(below, node).nats);
         let gain = gain.filter(|nats| nats.is_finite());

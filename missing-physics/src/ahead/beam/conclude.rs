@@ -113,6 +113,19 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         climb.base.clone()
     }
 
+    /// What is left of a set, or the one of as many effects that the search came by and that does clearly more: what was beside
+    /// an effect need not be what does most without it. Whether that one can be told is asked next.
+    pub(super) fn best_of_its_size(&self, climb: &Climb, left: Node) -> Node {
+        let size = Self::added(&climb.base, &left).len();
+        let sets = climb.nodes.get(size).filter(|_| size > 0).into_iter().flatten();
+        let gains = sets.map(|set| (self.comparison.compare(&left, set).nats, set));
+        let clear = |(gain, set): &(f64, &Node)| {
+            *gain > self.thresholds.clear(self.comparison.compare(&climb.base, set).nats)
+        };
+        let best = gains.filter(clear).max_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or(left, |(_, set)| set.clone())
+    }
+
     /// Why an effect of a set of several is not needed, if so: what the set without it loses, and that one.
     pub(super) fn why_goes(&self, set: &Node, cost: Difference, without: &Node) -> Option<Reason> {
         // Errors of an incomplete model are its own, and what lowers them counts only as far as it does so again and again
