@@ -67,6 +67,8 @@ pub fn discover(
     };
     let (found, raised) = watched(py, &stop, work, hear)?;
     let (family, discovery) = found?;
-    let found = py.detach(|| Found::discovery(data, family.on_view().clone(), discovery, settings.thresholds))?;
+    let found = py.detach(|| {
+        Found::discovery(data, family.on_view().clone(), discovery, settings.thresholds)
+    })?;
     Ok((found, raised))
 }
