@@ -187,6 +187,7 @@ IN_MODELICA = (
     {"motor-gain:current": {"c": 0.01}},
     {"motor-gain:knee": {"c": 0.03, "n": 2.5}},
     {"saturation:soft": {"u_max": 12.0, "n": 8.0}},
+    {"saturation:speed": {"u_max": 14.0, "kappa": 0.5, "v_high": 0.3}},
     {"motor-gain:ripple": {"a": 0.1, "b": 0.05, "l": 0.05}},
     {"motor-gain:stroke": {**{f"c_{k}": 0.1 / k for k in range(1, 7)}, "start": -0.05, "end": 0.4}},
     {"actuator-lag:second-order": {"tau": 4e-3, "zeta": 0.4}, "encoder": {"a": 1e-4, "b": 1e-4, "p": 5e-3}},

@@ -211,9 +211,7 @@ impl About {
 
     /// Whether `parameter` is the largest force that a drive gives: the lower it is, the more the effect does.
     pub fn is_limit_of_drive(&self, parameter: &Parameter) -> bool {
-        parameter.quantity == Quantity::Force
-            && parameter.role == ParameterRole::Shape
-            && self.acts_on(Slot::Drive)
+        parameter.quantity == Quantity::Force && parameter.role == ParameterRole::Shape
     }
 
     /// Whether it acts through `slot`.

@@ -37,7 +37,7 @@ static ABOUT: About = About {
             "v_s",
             "velocity at which half is broken",
             Quantity::Velocity,
-            (1e-6, 10.0),
+            (1e-6, 100.0),
             1e-3,
         ),
     ],

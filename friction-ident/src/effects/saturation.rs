@@ -1,6 +1,7 @@
 //! Saturation of the drive.
 
 mod soft;
+mod speed;
 
 use super::{About, Advance, Drive, Effect, Parameter, Parameters, Slot};
 use crate::axis::Quantity;
@@ -12,7 +13,7 @@ use crate::simd::limited;
 #[derive(Clone, Copy, Debug)]
 pub struct Saturation;
 
-static FORMS: [&dyn Effect; 1] = [&soft::Soft];
+static FORMS: [&dyn Effect; 2] = [&soft::Soft, &speed::Speed];
 
 const LIMIT: Parameter =
     Parameter::shape("u_max", "largest force", Quantity::Force, (1.0, 1e4), 300.0);

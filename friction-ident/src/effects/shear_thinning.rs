@@ -32,7 +32,7 @@ const THINS: Parameter = Parameter::shape(
     "v_n",
     "speed at which the lubricant thins",
     Quantity::Velocity,
-    (1e-4, 10.0),
+    (1e-4, 100.0),
     1e-2,
 );
 /// From a power of the speed (below 1) to one that falls again (2: eddy currents).

@@ -37,7 +37,7 @@ const HEIGHT: Parameter = Parameter::level(
     4.0,
 );
 const SPEED: Parameter =
-    Parameter::shape("v_s", "Stribeck velocity", Quantity::Velocity, (1e-6, 10.0), 2e-3);
+    Parameter::shape("v_s", "Stribeck velocity", Quantity::Velocity, (1e-6, 100.0), 2e-3);
 const EXPONENT: Parameter =
     Parameter::shape("delta", "exponent", Quantity::One, (0.3, 3.0), 1.0).linear();
 

@@ -5,7 +5,7 @@ use missing_physics::{Role, Term, TermParameter};
 
 use super::preparation::Prepared;
 use crate::axis::{Axis, Effort, Quantity};
-use crate::effects::{self, About, Effect, Periodic, Repeats, Trials};
+use crate::effects::{self, About, Effect, Periodic, Repeats, Slot, Trials};
 use crate::signal::quantile;
 
 /// Most trial periods of a wave: down to 1/280 of the stroke or the recording. Finer ones are not looked for.
@@ -16,6 +16,8 @@ pub const LINE_WIDTH: f64 = 0.4;
 
 /// Largest share of the time in which a drive is at its limit.
 const SATURATED: f64 = 0.2;
+/// A limit that falls with the speed is looked for up to this multiple of the largest force.
+const MORE_AT_REST: f64 = 3.0;
 /// Typical error of an encoder, in standard deviations of the noise of the position.
 const NOISES: f64 = 10.0;
 
@@ -136,7 +138,7 @@ impl Limits {
         let (lower, upper, start) = if amplitude {
             self.amplitude(parameter)
         } else if about.is_limit_of_drive(parameter) {
-            self.limit_of_drive()
+            self.limit_of_drive(about)
         } else {
             self.shape(parameter)
         };
@@ -183,10 +185,12 @@ impl Limits {
     }
 
     /// A limit of the drive that was reached, but not most of the time.
-    fn limit_of_drive(&self) -> (f64, f64, f64) {
-        let upper = self.force.most;
-        let lower = self.usual_force.clamp(1e-3 * upper, 0.99 * upper);
-        (lower, upper, (lower * upper).sqrt())
+    fn limit_of_drive(&self, about: &About) -> (f64, f64, f64) {
+        let most = self.force.most;
+        let lower = self.usual_force.clamp(1e-3 * most, 0.99 * most);
+        // One that falls with the speed may be reached where hardly anything is left of it.
+        let upper = if about.acts_on(Slot::Drive) { most } else { MORE_AT_REST * most };
+        (lower, upper, (lower * most).sqrt())
     }
 
     /// A shape within what the motion covers; never empty.
@@ -230,7 +234,7 @@ pub fn is_fixed(parameter: &effects::Parameter) -> bool {
 fn is_amplitude(about: &About, parameter: &effects::Parameter) -> bool {
     let linear = parameter.scale == Scale::Linear;
     parameter.role == effects::ParameterRole::Amplitude
-        || (linear && parameter.quantity == Quantity::Time && about.acts_on(effects::Slot::Drive))
+        || (linear && parameter.quantity == Quantity::Time && about.acts_on(Slot::Drive))
 }
 
 /// Trial periods along the stroke, or the recording, of `length` within the limits of `term`, the shortest first: evenly in

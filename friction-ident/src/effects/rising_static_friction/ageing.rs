@@ -35,7 +35,7 @@ static ABOUT: About = About {
             "v_c",
             "velocity above which hardly anything is left",
             Quantity::Velocity,
-            (1e-6, 10.0),
+            (1e-6, 100.0),
             1e-3,
         ),
     ],

@@ -72,7 +72,7 @@ static ABOUT: About = About {
             "v_high",
             "speed at which the curve ends",
             Quantity::Velocity,
-            (1e-6, 10.0),
+            (1e-6, 100.0),
             0.05,
         )
         .taken_from(Extent::TopSpeed),

@@ -213,6 +213,10 @@ impl Part {
             }
             "saturation" => drive("max(-{u_max}, min({u_max}, @in))"),
             "saturation:soft" => drive("@in/(1 + (abs(@in)/{u_max})^{n})^(1/{n})"),
+            "saturation:speed" => Self {
+                smooth: "(drive - max(-{u_max}*(1 + {kappa}*v/{v_high}), min({u_max}*(1 - {kappa}*v/{v_high}), drive)))".into(),
+                ..Self::default()
+            },
             // A lag or delay of nothing is none: its equation would be singular.
             "actuator-lag" | "actuator-lag:second-order" | "input-delay"
                 if term.values()[0] <= 0.0 =>
