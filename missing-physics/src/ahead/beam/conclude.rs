@@ -117,7 +117,7 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
     /// an effect need not be what does most without it. Whether that one can be told is asked next.
     pub(super) fn best_of_its_size(&self, climb: &Climb, left: Node) -> Node {
         let size = Self::added(&climb.base, &left).len();
-        let sets = climb.nodes.get(size).filter(|_| size > 0).into_iter().flatten();
+        let sets = climb.nodes.get(size).into_iter().flatten();
         let gains = sets.map(|set| (self.comparison.compare(&left, set).nats, set));
         let clear = |(gain, set): &(f64, &Node)| {
             *gain > self.thresholds.clear(self.comparison.compare(&climb.base, set).nats)

@@ -188,6 +188,24 @@ fn what_is_left_of_a_refused_set_must_gain_as_much_as_any() {
 }
 
 #[test]
+fn what_is_left_of_a_refused_set_gives_way_to_one_of_its_size_that_does_clearly_more() {
+    let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.02])];
+    let plant = Plant::new(3, &hidden);
+    let [wave, beat] = hidden.map(|effect| node(&plant, &[effect]));
+    let none = node(&plant, &[]);
+    let climb = climb(&plant, vec![vec![beat.clone(), wave.clone()], vec![node(&plant, &hidden)]]);
+    let search = search(&plant, narrow());
+    let of_its_size = |left: &Node| search.best_of_its_size(&climb, left.clone()).effects(&plant);
+    assert_eq!(of_its_size(&beat), [WAVE]);
+    assert_eq!(of_its_size(&wave), [WAVE]);
+    assert_eq!(of_its_size(&none), [0; 0]);
+    // As good is not better.
+    let near = node(&plant, &[(WAVE, &[0.0499])]);
+    let kept = search.best_of_its_size(&climb, near.clone());
+    assert_eq!(kept.model, near.model);
+}
+
+#[test]
 fn two_effects_are_taken_together_where_one_gains_too_little_if_each_is_worth_its_gain() {
     let hidden: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
     let plant = Plant::new(3, &hidden);
