@@ -34,11 +34,8 @@ pub fn searched(
     bandwidth: Option<f64>,
     known: &Known,
 ) -> Result<FrictionFamily, Failure> {
-    let family = family(recording, None, known)?;
-    match bandwidth {
-        Some(bandwidth) => Ok(family.shown_below(bandwidth)?),
-        None => Ok(family),
-    }
+    let used = looked_at(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
+    Ok(FrictionFamily::to_search(&used, &options(bandwidth, known))?)
 }
 
 /// The models of a ladder.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use friction_ident::family::{FrictionFamily, Options};
+use friction_ident::family::FrictionFamily;
 use missing_physics::report::Confirmed;
 use missing_physics::{Discovery, ModelFamily, confirm};
 use pyo3::prelude::*;
@@ -29,7 +29,6 @@ pub fn discover(
     let given = data.get();
     let settings = search.settings(given, &stop)?;
     let options = search.options(given, None)?;
-    let own = Options { bandwidth: None, ..options.clone() };
     let work = |events| -> PyResult<(FrictionFamily, Discovery)> {
         let family = searched(given, &options)?;
         if surrogates > 0 && family.is_beside() {
@@ -55,7 +54,7 @@ pub fn discover(
         if let Some(last) = discovery.ladder.last().filter(|_| surrogates > 0 && go_on()) {
             let model = family.plant(last).map_err(bad_input)?;
             let found = family
-                .false_alarms(&model, (&settings, &own), surrogates, |_| go_on())
+                .false_alarms(&model, (&settings, &options), surrogates, |_| go_on())
                 .map_err(bad_input)?;
             discovery.surrogates = Some(found);
         }

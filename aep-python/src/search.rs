@@ -5,10 +5,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use friction_ident::effects::beside::MODEL_FORCE;
-use friction_ident::family::{FrictionFamily, Options};
+use friction_ident::family::{FrictionFamily, Options, PreparationError};
 use friction_ident::{Known, Library};
 use missing_physics::measurement::looked_at;
-use missing_physics::{Event, Observer, Settings, Thresholds};
+use missing_physics::{Event, Observer, Recording, Settings, Thresholds};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -136,20 +136,23 @@ impl Search {
 
 /// The model family of data, of a very long recording of pieces of it; nothing is interpolated over long gaps.
 pub fn family(data: &Data, options: &Options) -> PyResult<FrictionFamily> {
-    let used = looked_at(&data.loaded.recording).map_err(bad_input)?;
-    FrictionFamily::new(&used, options).map_err(|error| {
-        let hint = "record a motion that reverses several times and covers slow and fast speeds";
-        bad_input(format!("{}\n  {hint}", keywords(&error.to_string())))
-    })
+    prepared(data, |recording| FrictionFamily::new(recording, options))
 }
 
 /// The model family in which data are searched; what is shown of it is compared below the bandwidth of `options`.
 pub fn searched(data: &Data, options: &Options) -> PyResult<FrictionFamily> {
-    let found = family(data, &Options { bandwidth: None, ..options.clone() })?;
-    match options.bandwidth {
-        Some(bandwidth) => found.shown_below(bandwidth).map_err(bad_input),
-        None => Ok(found),
-    }
+    prepared(data, |recording| FrictionFamily::to_search(recording, options))
+}
+
+fn prepared(
+    data: &Data,
+    family: impl Fn(&Recording) -> Result<FrictionFamily, PreparationError>,
+) -> PyResult<FrictionFamily> {
+    let used = looked_at(&data.loaded.recording).map_err(bad_input)?;
+    family(&used).map_err(|error| {
+        let hint = "record a motion that reverses several times and covers slow and fast speeds";
+        bad_input(format!("{}\n  {hint}", keywords(&error.to_string())))
+    })
 }
 
 /// Names of effects that the library has.

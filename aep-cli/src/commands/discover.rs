@@ -183,7 +183,7 @@ pub fn run(args: &Args, global: Global) -> Result<(), Failure> {
         && let Some(last) = discovery.ladder.last()
     {
         let model = family.plant(last)?;
-        let options = steps::options(None, &known);
+        let options = steps::options(args.bandwidth, &known);
         let count = count.get();
         let found = family.false_alarms(&model, (&settings, &options), count, |k| {
             progress.say(format!("surrogate {} of {count}", k + 1));

@@ -3,16 +3,30 @@
 //! A search looks for where to begin below a bandwidth of its own, as wide as the noise of the position leaves it: a ripple
 //! that a narrower one hides is not found because someone wants to see a smoother curve.
 
+use missing_physics::Recording;
+
 use super::{FrictionFamily, Options};
 use crate::family::preparation::PreparationError;
 
 impl FrictionFamily {
+    /// Prepares a recording for a search, as [`FrictionFamily::new`] does: the bandwidth that is chosen is that of what is shown.
+    ///
+    /// # Errors
+    /// A channel is missing or constant, or too little of the recording moves.
+    pub fn to_search(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
+        let family = Self::new(recording, &Options { bandwidth: None, ..options.clone() })?;
+        match options.bandwidth {
+            Some(bandwidth) => family.shown_below(bandwidth),
+            None => Ok(family),
+        }
+    }
+
     /// The same, with what is shown of a search below `bandwidth`, Hz. Beside a given force, whose errors are forces, a search
     /// compares below it, too.
     ///
     /// # Errors
     /// Below it too little of the recording moves.
-    pub fn shown_below(self, bandwidth: f64) -> Result<Self, PreparationError> {
+    pub(super) fn shown_below(self, bandwidth: f64) -> Result<Self, PreparationError> {
         let (library, known) = (self.library.clone(), self.known.clone());
         let options = Options { bandwidth: Some(bandwidth), library, known };
         let shown = Self::as_recorded(&self.recording, &options)?.with_stroke_of(&self);
