@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::{Climb, Costs, STEPS, Search, negative};
+use super::{Climb, Costs, STEPS, Search, TRIED, negative};
 use crate::ahead::compare::Difference;
+use crate::ahead::fit::Fitter;
 use crate::ahead::foretold::is_foretold;
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
@@ -158,7 +159,9 @@ impl<F: ModelFamily + ?Sized> Search<'_, F> {
         if let Some(place) = base.terms.iter().position(is) {
             model = model.with(base.terms[place], &base.values[base.range(self.family, place)]);
         }
-        let mut best = self.refit(&model, node.setting, STEPS.1);
+        // An effect beside a model that is not fitted seems to be needed: for that there is always time.
+        let steps = if (self.stop)() { TRIED } else { STEPS.1 };
+        let mut best = Fitter::new(self.family, self.ahead).refit(model, node.setting, steps);
         let key = self.key(&best);
         // The effects alone do not tell: another form of what the base has is added, too.
         let is_same =

@@ -175,6 +175,20 @@ fn a_single_effect_is_not_dropped_for_what_it_gains() {
 }
 
 #[test]
+fn an_effect_is_weighed_beside_a_fitted_model_though_time_is_up() {
+    // Together a wave and its twin are what is there; either is without the other.
+    let plant = Plant::new(3, &[(WAVE, &[0.05])]);
+    let both = node(&plant, &[(WAVE, &[0.02]), (TWIN, &[0.03])]);
+    let stop = || true;
+    let search = Search::new(&plant, &plant, narrow(), ALL.to_vec(), &stop, &|_| ());
+    let without = search.without(&climb(&plant, Vec::new()), &both, TWIN);
+    let cost = search.comparison.compare(&without, &both).nats;
+    assert!(cost < 1.0, "{cost}");
+    let as_it_was = node(&plant, &[(WAVE, &[0.02])]);
+    assert!(search.comparison.compare(&as_it_was, &both).nats > 20.0);
+}
+
+#[test]
 fn what_is_left_of_a_refused_set_must_gain_as_much_as_any() {
     let plant = Plant::new(3, &[(WAVE, &[0.05])]);
     let mut search = search(&plant, narrow());
