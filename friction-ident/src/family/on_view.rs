@@ -1,7 +1,7 @@
 //! The bandwidth below which people look at a force.
 //!
 //! A search looks for where to begin below a bandwidth of its own, as wide as the noise of the position leaves it: a ripple
-//! that a narrower one hides is not found because someone wants to see a smoother curve.
+//! that a narrower one hides must not be missed because someone wants to see a smoother curve.
 
 use missing_physics::Recording;
 
