@@ -93,6 +93,22 @@ fn the_json_keeps_the_contract() {
 }
 
 #[test]
+fn a_bandwidth_shows_another_error_of_the_force_and_decides_nothing() {
+    let desk = Desk::new();
+    for flag in ["", "--bandwidth 8"] {
+        let name = if flag.is_empty() { "own" } else { "narrow" };
+        desk.aep(&format!("discover -q --time-limit none --json {name}.json {flag}")).done();
+    }
+    let [own, narrow] = ["own.json", "narrow.json"].map(|name| desk.json(name));
+    for key in ["verdict", "added", "budget", "decisions"] {
+        assert_eq!(own[key], narrow[key], "{key}");
+    }
+    let force =
+        |json: &serde_json::Value| json["ladder"][0]["error"]["force_relative"]["fit"].as_f64();
+    assert!((force(&own).unwrap() / force(&narrow).unwrap() - 1.0).abs() > 0.02);
+}
+
+#[test]
 fn where_nothing_is_hidden_nothing_is_found() {
     let desk = Desk::new();
     desk.challenge("nothing", 1, "c");
