@@ -24,8 +24,7 @@ pub fn family(
     bandwidth: Option<f64>,
     known: &Known,
 ) -> Result<FrictionFamily, Failure> {
-    let used = looked_at(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::new(&used, &options(bandwidth, known))?)
+    Ok(FrictionFamily::new(&used(recording)?, &options(bandwidth, known))?)
 }
 
 /// The model family in which a recording is searched; what is shown of it is compared below `bandwidth`, Hz.
@@ -34,8 +33,11 @@ pub fn searched(
     bandwidth: Option<f64>,
     known: &Known,
 ) -> Result<FrictionFamily, Failure> {
-    let used = looked_at(recording).map_err(|error| Failure::bad_input(error.to_string()))?;
-    Ok(FrictionFamily::to_search(&used, &options(bandwidth, known))?)
+    Ok(FrictionFamily::to_search(&used(recording)?, &options(bandwidth, known))?)
+}
+
+fn used(recording: &Recording) -> Result<Recording, Failure> {
+    looked_at(recording).map_err(|error| Failure::bad_input(error.to_string()))
 }
 
 /// The models of a ladder.

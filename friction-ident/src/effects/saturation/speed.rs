@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_faster_it_is_the_less_drives_and_the_more_brakes() {
-        // 30 N at rest, none is lost of the brake.
+        // 30 N at rest, half of it at the top speed; as much more may brake.
         let p = [30.0, 0.5, 0.2];
         let withheld = |drive_force: f64, v: f64| {
             smooth(&Speed, &p, Point { drive_force, ..Point::at(0.0, v) })
