@@ -156,9 +156,7 @@ pub fn detection_limit(limit: &DetectionLimit) -> String {
 /// The verdict in two or three words.
 pub fn verdict(discovery: &Discovery) -> &'static str {
     match discovery.verdict {
-        Verdict::Stopped => "Stopped before anything was found",
-        // What stands was compared; what else there is was not looked for.
-        Verdict::EffectsFound | Verdict::Ambiguous if is_cut(discovery) => "Found so far",
+        Verdict::Stopped => "Stopped before anything was certain",
         Verdict::EffectsFound if discovery.added.len() > 1 => "Missing effects found",
         Verdict::EffectsFound => "Missing effect found",
         Verdict::NothingMissing => "Nothing is missing",
@@ -555,19 +553,5 @@ mod tests {
         assert_eq!(said(false), "incomplete: 3.1 times what the sensors make is left");
         let unknown = Discovery { budget: None, ..discovery("effects_found", true) };
         assert_eq!(completeness(&unknown), None);
-    }
-
-    #[test]
-    fn what_a_search_found_before_it_was_cut_was_found_so_far() {
-        let whole = discovery("effects_found", true);
-        assert_eq!(verdict(&whole), "Missing effect found");
-        for verdict in ["effects_found", "ambiguous"] {
-            let untried = vec!["drift".to_owned()];
-            let cut = Discovery { untried, ..discovery(verdict, true) };
-            assert_eq!(super::verdict(&cut), "Found so far");
-            let stopped = Discovery { stopped: true, ..discovery(verdict, true) };
-            assert_eq!(super::verdict(&stopped), "Found so far");
-        }
-        assert_eq!(verdict(&discovery("stopped", false)), "Stopped before anything was found");
     }
 }

@@ -182,10 +182,10 @@ fn what_decided_stands_on_the_page() {
 #[test]
 fn a_search_that_was_cut_claims_no_more_than_it_has() {
     let mut discovery = ahead();
-    discovery.verdict = Verdict::EffectsFound;
+    discovery.verdict = Verdict::Stopped;
     discovery.untried = vec!["drift".to_owned()];
     let page = page(&discovery);
-    assert!(page.contains("Found so far") && !page.contains("Missing effect"));
+    assert!(page.contains("before anything was certain") && !page.contains("Missing effect"));
 }
 
 /// The page without the scripts that every page has.

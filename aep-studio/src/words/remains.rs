@@ -4,6 +4,7 @@ use missing_physics::measurement::quantity::quantity;
 use missing_physics::report::{Astray, Course, Fault, NoCause, Refusal, Remains};
 
 use super::places::pattern;
+use super::times;
 
 /// Something that a model leaves, as a sentence.
 pub fn remains(what: &Remains) -> String {
@@ -33,10 +34,12 @@ pub fn remains(what: &Remains) -> String {
                 ),
             }
         }
-        Remains::RivalsUnasked => {
-            "Whether something that varies freely with time does as much was not asked any more."
-                .to_owned()
-        }
+        Remains::SoFar { effects, nats, last } => format!(
+            "Found so far: {} ({nats:+.0} nats; {} times what the sensors make is left). What might take that back was not asked: \
+             more effects, fewer ones, what stands for none.",
+            effects.join(", "),
+            times(*last)
+        ),
         Remains::MissingForce { rms, band, unit } => format!(
             "It lacks {} (rms) beyond doubt: that is known to ±{}.",
             quantity(*rms, unit),

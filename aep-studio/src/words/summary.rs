@@ -18,7 +18,7 @@ pub fn summary(discovery: &Discovery) -> String {
         return if is_cut(discovery) { STOPPED.to_owned() } else { String::new() };
     };
     let mut text = verdict(discovery, &budget);
-    if !budget.complete && discovery.verdict != Verdict::Stopped {
+    if !budget.complete {
         if !discovery.added.is_empty() {
             // How much is left has been said.
             text.push_str(" The model is still incomplete.");
@@ -36,7 +36,7 @@ pub fn summary(discovery: &Discovery) -> String {
     text
 }
 
-const STOPPED: &str = "Stopped: the search was cut before anything could be said.";
+const STOPPED: &str = "Stopped: the search was cut before anything could be said for certain.";
 
 fn verdict(discovery: &Discovery, budget: &Budget) -> String {
     match discovery.verdict {
@@ -57,8 +57,7 @@ fn verdict(discovery: &Discovery, budget: &Budget) -> String {
         ),
         Verdict::Stopped => STOPPED.to_owned(),
         Verdict::EffectsFound | Verdict::Ambiguous => format!(
-            "{}: {}. With {} the prediction error falls from {:.2} to {:.2} times what the sensors make{}.",
-            if discovery.stopped { "Found so far" } else { "Missing" },
+            "Missing: {}. With {} the prediction error falls from {:.2} to {:.2} times what the sensors make{}.",
             discovery.added.join(", "),
             if discovery.added.len() > 1 { "them" } else { "it" },
             budget.base,
@@ -167,13 +166,21 @@ mod tests {
 
     #[test]
     fn a_search_that_was_cut_says_what_was_not_tried() {
-        let cut = discovery(&[("stopped", json!(true)), ("untried", json!(["drift", "ripple"]))]);
+        let cut = discovery(&[
+            ("verdict", json!("stopped")),
+            ("added", json!([])),
+            ("stopped", json!(true)),
+            ("untried", json!(["drift", "ripple"])),
+            budget(3.0),
+        ]);
+        assert!(!summary(&cut).contains("so far"), "{}", summary(&cut));
+        let so_far =
+            json!([{"kind": "so_far", "effects": ["stribeck"], "nats": 830.0, "last": 1.1}]);
+        let cut = Discovery { remains: serde_json::from_value(so_far).unwrap(), ..cut };
         let said = summary(&cut);
-        assert!(said.starts_with("Found so far: stribeck."), "{said}");
+        assert!(said.starts_with(STOPPED), "{said}");
+        assert!(said.contains("Found so far: stribeck (+830 nats; 1.10 times"), "{said}");
         assert!(said.ends_with("Not tried: drift, ripple."), "{said}");
-        let nothing =
-            discovery(&[("verdict", json!("stopped")), ("added", json!([])), budget(3.0)]);
-        assert_eq!(summary(&nothing), STOPPED);
     }
 
     #[test]

@@ -63,7 +63,7 @@ impl FrictionFamily {
             let Some(made) = self.surrogate(model, settings.seed + k as u64) else { continue };
             let Ok(family) = FrictionFamily::to_search(&made, options) else { continue };
             let found = discover(&family.with_stroke_of(self), &settings, &mut ())?;
-            // Cut before anything could be said: silence then says nothing.
+            // Cut: silence then says nothing.
             if found.verdict == Verdict::Stopped {
                 continue;
             }

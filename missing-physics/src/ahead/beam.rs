@@ -266,8 +266,6 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
                     best = without;
                     continue;
                 }
-                let unasked = (self.stop)() && !costs.is_empty() && !self.ahead.rivals().is_empty();
-                rival = unasked.then_some(Remains::RivalsUnasked);
             } else if !costs.is_empty()
                 && let Some((without, found)) = self.outdone(&climb, &last)
             {

@@ -388,8 +388,10 @@ impl<'a> Run<'a> {
 
     fn reported<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
         (self.tell)(&Event::Finishing);
-        let Sought { reading, found, on_part } = sought;
+        let Sought { reading, mut found, on_part } = sought;
         let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
+        found.stopped |= (self.stop)();
+        found.so_far(family, ahead);
         let report = Report { family, ahead, settings, found, brief: on_part, stop: self.stop };
         let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());

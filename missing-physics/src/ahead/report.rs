@@ -159,7 +159,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     fn verdict(&self, budget: &Budget, ambiguous: bool) -> Verdict {
         let nothing = self.found.added.is_empty();
         match (nothing, budget.complete, self.found.stopped) {
-            (_, _, true) if nothing => Verdict::Stopped,
+            (_, _, true) => Verdict::Stopped,
             (true, true, _) => Verdict::NothingMissing,
             (true, false, _) => Verdict::Unexplained,
             (false, ..) if ambiguous => Verdict::Ambiguous,

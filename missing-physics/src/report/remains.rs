@@ -79,8 +79,15 @@ pub enum Remains {
         /// What it gains over the model with them, nats.
         nats: f64,
     },
-    /// Time ran out before anything that stands for no effect was asked.
-    RivalsUnasked,
+    /// The search was cut: what stood then, and what might have taken it back was not asked any more.
+    SoFar {
+        /// The effects.
+        effects: Vec<String>,
+        /// What they gain over the base model, nats.
+        nats: f64,
+        /// Prediction error with them, in multiples of what the sensors make.
+        last: f64,
+    },
     /// It lacks a force beyond doubt.
     MissingForce {
         /// Root mean square of it.

@@ -14,7 +14,7 @@ pub enum Verdict {
     Unexplained,
     /// Several candidates explain it equally well on this data.
     Ambiguous,
-    /// The search was cut short before anything could be said.
+    /// The search was cut short before anything was certain.
     Stopped,
 }
 

@@ -120,6 +120,27 @@ impl Found {
         still.then(|| (Lacking { base, last, unit: family.quantity().unit }, band))
     }
 
+    /// A search that was cut names nothing, and says of nothing that it is not in the library: more effects, fewer ones,
+    /// another reading or what stands for no effect might have taken that back. Names are told as what stood so far.
+    pub fn so_far<F: ModelFamily + ?Sized>(&mut self, family: &F, ahead: &dyn Ahead) {
+        if !self.stopped {
+            return;
+        }
+        if self.added.is_empty() {
+            let says =
+                |what: &Remains| !matches!(what, Remains::Rival { .. } | Remains::Outdone { .. });
+            self.places.retain(says);
+            return;
+        }
+        let names = self.added.iter().map(|term| family.terms()[*term].name.clone());
+        self.places = vec![Remains::SoFar {
+            effects: names.collect(),
+            nats: self.gains.iter().map(|gain| gain.nats).sum(),
+            last: self.top().0.scale / ahead.budget(),
+        }];
+        self.without_names();
+    }
+
     fn taken_back<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
@@ -136,6 +157,10 @@ impl Found {
             because,
         });
         self.places = left_by(&self.base, family, ahead, thresholds);
+        self.without_names();
+    }
+
+    fn without_names(&mut self) {
         self.complete = false;
         self.rungs.clear();
         self.added.clear();
@@ -171,7 +196,7 @@ mod tests {
     use crate::ahead::fit;
     use crate::ahead::testing::{NOISE, Plant, TONE, WAVE};
     use crate::family::Series;
-    use crate::report::Fault;
+    use crate::report::{Fault, Refusal};
 
     /// A wave that was found where it is, every model lacking a force of 2 V known to `band`.
     fn found(lacks: Option<f64>) -> (Plant, Found) {
@@ -204,6 +229,31 @@ mod tests {
             found.place(&plant, &plant, &Thresholds { complete, ..Thresholds::default() });
             assert_eq!((found.complete, found.places.len()), (is, 0), "{complete}");
         }
+    }
+
+    #[test]
+    fn a_search_that_was_cut_tells_names_as_what_stood_so_far_and_of_nothing_that_it_is_not_in_the_library()
+     {
+        let (plant, whole) = found(None);
+        let told = |stopped: bool, mut found: Found| {
+            found.stopped = stopped;
+            found.so_far(&plant, &plant);
+            (found.added.len(), found.rungs.len(), found.places)
+        };
+        assert_eq!(told(false, whole.clone()), (1, 1, Vec::new()));
+        let (added, rungs, places) = told(true, whole.clone());
+        let [Remains::SoFar { effects, last, .. }] = &places[..] else { panic!("{places:?}") };
+        assert_eq!((added, rungs, effects.as_slice()), (0, 0, &["wave".to_owned()][..]));
+        assert!((last - found_scales().1).abs() < 1e-12);
+        let outdone = Remains::Outdone {
+            by: vec!["wave".into()],
+            refusal: Refusal::AtLimit { parameter: "wave.a".into() },
+            instead_of: Vec::new(),
+            nats: 99.0,
+        };
+        let none = Found { places: vec![outdone, Remains::TooCoarse], ..Found::of(whole.base) };
+        assert_eq!(told(true, none.clone()).2, [Remains::TooCoarse]);
+        assert_eq!(told(false, none).2.len(), 2);
     }
 
     #[test]

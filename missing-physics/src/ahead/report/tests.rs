@@ -58,7 +58,7 @@ fn the_verdict_follows_from_what_was_found_and_what_is_left() {
     };
     for complete in [false, true] {
         assert_eq!(of(false, complete, true, false), Verdict::Stopped);
-        assert_eq!(of(true, complete, true, false), Verdict::EffectsFound);
+        assert_eq!(of(true, complete, true, false), Verdict::Stopped);
         assert_eq!(of(true, complete, false, false), Verdict::EffectsFound);
         assert_eq!(of(true, complete, false, true), Verdict::Ambiguous);
     }
