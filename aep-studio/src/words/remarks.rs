@@ -47,15 +47,6 @@ pub fn remark(remark: &Remark) -> String {
             "Nothing was named on pieces that are {} of what was looked at; there was no time to search all of it.",
             percent(*share)
         ),
-        Remark::SecondLookCut => {
-            "Time ran out before it was known whether other effects, which hide each other, do as much."
-                .to_owned()
-        }
-        Remark::OtherReadingUnasked => {
-            "Time ran out before it was known whether fewer effects do where the force acts otherwise between samples \
-             (held or changing evenly)."
-                .to_owned()
-        }
         Remark::Read { input, hold, nats, by_search } => {
             let how = match hold {
                 Hold::ZeroOrder => "held from one sample to the next",

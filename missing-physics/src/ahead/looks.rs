@@ -48,7 +48,8 @@ pub fn discover<F: ModelFamily + ?Sized>(
         Some(Other { reading: Reading::of(family)?, nats, decided })
     });
     run.looked(here, there.as_ref(), |sought| {
-        let longer = sought.searched_in_vain(&thresholds).zip(Reading::longer(here.family));
+        let in_vain = if stop() { None } else { sought.searched_in_vain(&thresholds) };
+        let longer = in_vain.zip(Reading::longer(here.family));
         let Some((share, longer)) = longer else { return run.told(sought) };
         let in_pieces = Remark::SearchedInPieces { share };
         let times = longer.searched().share() / share;
@@ -58,7 +59,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
         let there = there.as_ref().and_then(Other::longer);
         run.looked(&longer, there.as_ref(), |again| {
             if again.found.stopped && again.found.added.is_empty() {
-                return run.told(sought.cut(in_pieces));
+                return run.told(sought.but(in_pieces));
             }
             run.told(again.after(sought.found.decisions))
         })
@@ -179,12 +180,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
         {
             return (other, there);
         }
-        let mut found = first.search.finish_grown(first.climb, grown);
-        if stop() && !found.added.is_empty() {
-            found.stopped = true;
-            found.remarks.push(Remark::OtherReadingUnasked);
-            return (first.reading, found);
-        }
+        let found = first.search.finish_grown(first.climb, grown);
         if let Some(second) = second
             && let Some(led) = less((found.top().0, &found.added))
             && let Some(there) = there(second, led, found.top())
@@ -253,9 +249,7 @@ impl<'a> Run<'a> {
             {
                 tell(second.after(first.found.decisions))
             }
-            Some(second) if !second.found.stopped => tell(first),
-            None if !stop() => tell(first),
-            _ => tell(first.cut(Remark::SecondLookCut)),
+            _ => tell(first),
         }
     }
 

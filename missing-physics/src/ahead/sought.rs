@@ -32,7 +32,7 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
     /// and what is small gains less there than chance may.
     pub(super) fn searched_in_vain(&self, thresholds: &Thresholds) -> Option<f64> {
         let Reading { family, whole, part, .. } = self.reading;
-        let part = part.as_ref().filter(|_| !self.on_part && !self.found.stopped)?;
+        let part = part.as_ref().filter(|_| !self.on_part)?;
         let mut found = self.found.clone();
         found.judge_force(*family, &**whole, thresholds);
         found.added.is_empty().then(|| part.share())
@@ -79,12 +79,6 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
     pub(super) fn but(mut self, remark: Remark) -> Self {
         self.found.remarks.push(remark);
         self
-    }
-
-    /// The same where time ran out before what might have told better was over.
-    pub(super) fn cut(mut self, remark: Remark) -> Self {
-        self.found.stopped = true;
-        self.but(remark)
     }
 }
 
@@ -157,12 +151,9 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_second_look_is_told_and_what_was_compared_before_stands_first() {
+    fn what_was_compared_before_stands_first() {
         let plant = plant();
         let reading = Reading::of(&plant).unwrap();
-        let cut = sought(&reading, &plant, 1, false).cut(Remark::SecondLookCut);
-        assert!(cut.found.stopped);
-        assert_eq!(cut.found.remarks, [Remark::SecondLookCut]);
         let decision = |rung| Decision {
             rung,
             candidate: Vec::new(),

@@ -85,10 +85,6 @@ pub enum Remark {
         /// The pieces as a share of it.
         share: f64,
     },
-    /// Time ran out before it was known whether other effects, which hide each other, do as much.
-    SecondLookCut,
-    /// Time ran out before it was known whether fewer effects do in the other reading of the input.
-    OtherReadingUnasked,
     /// How the input was read between samples, where nobody said it.
     Read {
         /// The input.
