@@ -19,12 +19,16 @@ const STRETCH: f64 = 0.5;
 const SHARE: f64 = 0.15;
 
 /// Whether a model gains less than `better` over another that errs no more than the sensors, or less than a part of `nats`,
-/// once the errors of either are foretold from those before them; over one that errs more, nothing: there what is missing
-/// makes errors alike, too.
+/// once the errors of either are foretold from those before them. Of larger errors what is missing makes them alike, too.
 pub fn is_foretold(ahead: &dyn Ahead, from: &Node, to: &Node, nats: f64, better: f64) -> bool {
-    let within = from.scale <= ahead.budget();
-    let least = if within { better.min(SHARE * nats) } else { 0.0 };
-    ahead.has_shares() && nats > 0.0 && gain(ahead, from, to) < least
+    let within = ahead.has_shares() && from.scale <= ahead.budget();
+    within && nats > 0.0 && gain(ahead, from, to) < better.min(SHARE * nats)
+}
+
+/// Whether a model that leaves nothing predicts worse than one that lacks all it has, whatever that errs, once the errors of
+/// either are foretold.
+pub fn is_loss(ahead: &dyn Ahead, from: &Node, to: &Node) -> bool {
+    ahead.has_shares() && gain(ahead, from, to) < 0.0
 }
 
 /// What a model gains over another by what is left of its errors, nats.
@@ -94,10 +98,28 @@ mod tests {
         let forced: Vec<f64> =
             white.iter().zip(noise(2)).map(|(e, force)| e + force.signum()).collect();
         assert!(!told(&forced, &white, 0.5));
-        // What is missing beyond the sensors makes errors alike, too,
-        assert!(!told(&forced, &white, 2.0));
-        // but what explains it does not predict less than they do themselves.
-        let less: Vec<f64> = white.iter().map(|e| 1.1 * e).collect();
-        assert!(told(&rings, &less, 2.0));
+        // What is missing beyond the sensors makes errors alike, too.
+        assert!(!told(&rings, &white, 2.0));
+    }
+
+    #[test]
+    fn what_is_missing_predicts_no_less_than_the_errors_do_themselves() {
+        let plant = Plant::new(1, &[]);
+        let node = |errors: &[f64]| {
+            let errors = errors.iter().map(|e| 2.0 * plant.budget() * e).collect();
+            Node::new(&plant, Plant::model(&[]), 0, errors)
+        };
+        let white = noise(1);
+        let mut last = 0.0;
+        let alike: Vec<f64> = white
+            .iter()
+            .map(|new| {
+                last = new + 0.8 * last;
+                last
+            })
+            .collect();
+        let larger: Vec<f64> = noise(2).iter().map(|e| 1.2 * e).collect();
+        assert!(is_loss(&plant, &node(&alike), &node(&larger)));
+        assert!(!is_loss(&plant, &node(&larger), &node(&white)));
     }
 }

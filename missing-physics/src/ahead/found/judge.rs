@@ -3,7 +3,7 @@
 use super::Found;
 use crate::ahead::astray::astray;
 use crate::ahead::compare::Comparison;
-use crate::ahead::foretold::is_foretold;
+use crate::ahead::foretold::{is_foretold, is_loss};
 use crate::ahead::node::Node;
 use crate::ahead::{Ahead, local};
 use crate::family::ModelFamily;
@@ -45,9 +45,7 @@ impl Found {
         let Some(top) = self.rungs.last() else { return };
         let nats = Comparison::new(family, ahead).unfitted(&self.base, top).nats;
         if is_foretold(ahead, &self.base, top, nats, thresholds.better) {
-            self.taken_back(family, ahead, thresholds, (None, Some(NoCause::Foretold)));
-            // That something gains so says nothing of the base.
-            self.place(family, ahead, thresholds);
+            self.is_foretold(family, ahead, thresholds);
             return;
         }
         let astray = self.places.iter().find_map(|place| match place {
@@ -62,6 +60,9 @@ impl Found {
             || self.leaves_force(ahead, if within { thresholds.local } else { 0.0 });
         let falls = top.foretells_more(&self.base) && !idle;
         if self.complete && falls && no_cause.is_none() {
+            if is_loss(ahead, &self.base, top) {
+                self.is_foretold(family, ahead, thresholds);
+            }
             return;
         }
         let still = self.still_lacking(family, ahead, (thresholds.local, MOST));
@@ -139,6 +140,17 @@ impl Found {
             last: self.top().0.scale / ahead.budget(),
         }];
         self.without_names();
+    }
+
+    /// Takes all names back that gain what the errors themselves foretell: that says nothing of the base.
+    fn is_foretold<F: ModelFamily + ?Sized>(
+        &mut self,
+        family: &F,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        self.taken_back(family, ahead, thresholds, (None, Some(NoCause::Foretold)));
+        self.place(family, ahead, thresholds);
     }
 
     fn taken_back<F: ModelFamily + ?Sized>(
