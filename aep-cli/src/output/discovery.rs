@@ -443,6 +443,7 @@ fn place(rung: &Rung, name: &str) -> (Option<usize>, Option<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use missing_physics::report::{Budget, Remains};
     use serde_json::{Value, json};
 
     fn estimate(value: f64) -> Value {
@@ -584,11 +585,14 @@ mod tests {
             text.contains("MISSING EFFECT FOUND: position-friction:fine\n complete: 1.04 times"),
             "{text}"
         );
-        found.untried = vec!["drift".to_owned()];
+        found.verdict = Verdict::Stopped;
+        let effects = std::mem::take(&mut found.added);
+        found.remains = vec![Remains::SoFar { effects, nats: 900.0, last: 1.04 }];
+        found.budget = found.budget.map(|budget| Budget { complete: false, ..budget });
         let text = plain(&verdict(&found));
         assert!(
-            text.contains("FOUND SO FAR: position-friction:fine")
-                && !text.contains("MISSING EFFECT"),
+            text.contains("STOPPED BEFORE ANYTHING WAS CERTAIN\n incomplete")
+                && text.contains("Found so far:\n position-friction:fine (+900 nats; 1.04 times"),
             "{text}"
         );
         fits(&why(&"a long reason ".repeat(20)));
