@@ -554,4 +554,10 @@ mod tests {
         let unknown = Discovery { budget: None, ..discovery("effects_found", true) };
         assert_eq!(completeness(&unknown), None);
     }
+
+    #[test]
+    fn a_search_that_was_cut_has_a_verdict_of_its_own() {
+        assert_eq!(verdict(&discovery("effects_found", true)), "Missing effect found");
+        assert_eq!(verdict(&discovery("stopped", false)), "Stopped before anything was certain");
+    }
 }

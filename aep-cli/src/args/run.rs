@@ -21,9 +21,9 @@ pub struct RunArgs {
     /// Seed of every random choice; the same seed gives the same result
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Seconds from the start of the command, after which a search ends; `none` for no limit. A discovery that is cut names nothing and tells the best so far as such. Without it
-    /// the search ends after 60 s, however long the file took to read. A result that no limit cut is the same on every
-    /// machine
+    /// Seconds from the start of the command, after which a search ends; `none` for no limit. A discovery that is cut names
+    /// nothing and tells the best so far as such. Without it the search ends after 60 s, however long the file took to read.
+    /// A result that no limit cut is the same on every machine
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = limit)]
     time_limit: Option<Limit>,
     /// Largest p-value at which an effect is called likely, by 'suggest' and on --validate recordings

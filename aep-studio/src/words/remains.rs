@@ -36,7 +36,7 @@ pub fn remains(what: &Remains) -> String {
         }
         Remains::SoFar { effects, nats, last } => format!(
             "Found so far: {} ({nats:+.0} nats; {} times what the sensors make is left). What might take that back was not asked: \
-             more effects, fewer ones, what stands for none.",
+             more effects, fewer ones, what stands for none. A longer time limit asks it.",
             effects.join(", "),
             times(*last)
         ),

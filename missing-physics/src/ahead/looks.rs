@@ -59,7 +59,7 @@ pub fn discover<F: ModelFamily + ?Sized>(
         let there = there.as_ref().and_then(Other::longer);
         run.looked(&longer, there.as_ref(), |again| {
             if again.found.stopped && again.found.added.is_empty() {
-                return run.told(sought.but(in_pieces));
+                return run.told(sought.but(in_pieces).cut());
             }
             run.told(again.after(sought.found.decisions))
         })
@@ -249,6 +249,7 @@ impl<'a> Run<'a> {
             {
                 tell(second.after(first.found.decisions))
             }
+            Some(second) if second.found.stopped => tell(first.cut()),
             _ => tell(first),
         }
     }

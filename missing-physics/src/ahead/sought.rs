@@ -80,6 +80,12 @@ impl<F: ModelFamily + ?Sized> Sought<'_, F> {
         self.found.remarks.push(remark);
         self
     }
+
+    /// The same where what might have told better was cut, or left no time to be asked of all of the recording.
+    pub(super) fn cut(mut self) -> Self {
+        self.found.stopped = true;
+        self
+    }
 }
 
 #[cfg(test)]
@@ -151,9 +157,13 @@ mod tests {
     }
 
     #[test]
-    fn what_was_compared_before_stands_first() {
+    fn a_cut_look_is_told_and_what_was_compared_before_stands_first() {
         let plant = plant();
         let reading = Reading::of(&plant).unwrap();
+        let of_pieces = Remark::SearchedInPieces { share: 0.25 };
+        let cut = sought(&reading, &plant, 1, false).but(of_pieces.clone()).cut();
+        assert!(cut.found.stopped);
+        assert_eq!(cut.found.remarks, [of_pieces]);
         let decision = |rung| Decision {
             rung,
             candidate: Vec::new(),

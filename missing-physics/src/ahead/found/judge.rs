@@ -45,7 +45,7 @@ impl Found {
         let Some(top) = self.rungs.last() else { return };
         let nats = Comparison::new(family, ahead).unfitted(&self.base, top).nats;
         if is_foretold(ahead, &self.base, top, nats, thresholds.better) {
-            self.is_foretold(family, ahead, thresholds);
+            self.taken_back_as_foretold(family, ahead, thresholds);
             return;
         }
         let astray = self.places.iter().find_map(|place| match place {
@@ -61,7 +61,7 @@ impl Found {
         let falls = top.foretells_more(&self.base) && !idle;
         if self.complete && falls && no_cause.is_none() {
             if is_loss(ahead, &self.base, top) {
-                self.is_foretold(family, ahead, thresholds);
+                self.taken_back_as_foretold(family, ahead, thresholds);
             }
             return;
         }
@@ -143,7 +143,7 @@ impl Found {
     }
 
     /// Takes all names back that gain what the errors themselves foretell: that says nothing of the base.
-    fn is_foretold<F: ModelFamily + ?Sized>(
+    fn taken_back_as_foretold<F: ModelFamily + ?Sized>(
         &mut self,
         family: &F,
         ahead: &dyn Ahead,
