@@ -165,6 +165,7 @@ IN_MODELICA = (
     {"shear-thinning:eyring": {"dF": 1.0, "v_n": 0.01}},
     {"shear-thinning:cross": {"dF": 4.0, "v_n": 0.01, "m": 0.7}},
     {"drift": {"dF_C": 1.0, "dF_v": 30.0, "tau": 1.0}, "load-friction": {"mu": 0.05}},
+    {"drift:linear": {"dF_C": -2.0, "dF_v": -8.0, "begin": 0.0, "finish": 4.0}},
     {"load-friction:both": {"mu": 0.05, "c": 0.5}},
     {"ripple": {"a_1": 1.0, "b_1": 0.3, "a_2": 0.3, "b_2": 0.3, "l": 0.02}},
     {"ripple:direction": {"a_p": 1.0, "b_p": 0.3, "a_m": 0.5, "b_m": 0.3, "l": 0.02}},

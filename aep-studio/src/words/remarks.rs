@@ -65,6 +65,11 @@ pub fn remark(remark: &Remark) -> String {
              is said is said of the filtered {input}.",
             quantity(*below, "Hz")
         ),
+        Remark::TakenTogether { input, every, apart } => format!(
+            "From one sample to the next the position shows little but its counts and its noise: every {every} are taken \
+             together, {} apart, the {input} averaged over them. What acts faster was not looked for.",
+            quantity(*apart, "s")
+        ),
         Remark::Given { input, most_shift } => format!(
             "The {input} that your model gives is taken over time, nothing of ours beside it. What its samples and \
              filters make is fitted and no effect: a shift of up to {most_shift} samples (timing.shift) and a smoothing \
@@ -128,6 +133,15 @@ mod tests {
             "The force is taken as held from one sample to the next: that predicts better by 312 nats."
         );
         assert!(read(Hold::Sampled, true).contains("hardly tells"));
+    }
+
+    #[test]
+    fn samples_that_are_taken_together_are_told_with_their_number_and_distance() {
+        let told = remark(&Remark::TakenTogether { input: "force".into(), every: 4, apart: 4e-3 });
+        assert!(
+            told.contains("every 4 are taken together, 4.00 ms apart, the force averaged"),
+            "{told}"
+        );
     }
 
     #[test]

@@ -1,12 +1,17 @@
 //! Drift: friction relaxes with time while the machine warms up.
 
+mod linear;
+
 use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::{exp, vectorised};
+use linear::Linear;
 
 /// `(dF_C + dF_v |v|) exp(-t/tau) s`: what is there at the start beyond the final friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Drift;
+
+static FORMS: [&dyn Effect; 1] = [&Linear];
 
 static ABOUT: About = About {
     name: "drift",
@@ -37,6 +42,10 @@ static ABOUT: About = About {
 impl Effect for Drift {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
     }
 
     fn whatever(&self) -> &'static [&'static str] {

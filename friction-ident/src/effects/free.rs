@@ -145,9 +145,9 @@ static ALONG: About = About {
     reference: "L. Ljung, System Identification, 1999, ch. 5.4 (basis functions)",
 };
 
-const BEGIN: Parameter =
+pub(super) const BEGIN: Parameter =
     moment("begin", "begin of the recording", 0.0).taken_from(Extent::RecordingBegin);
-const END: Parameter =
+pub(super) const END: Parameter =
     moment("finish", "end of the recording", 1.0).taken_from(Extent::RecordingEnd);
 
 static STEP: About = About {

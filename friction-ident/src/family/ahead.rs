@@ -64,9 +64,11 @@ struct Responses {
 }
 
 impl OneAhead {
-    /// Gains for a plant of about `mass` and `damping`; nothing where the recording is too short.
-    pub fn new(recording: &Recording, mass: f64, damping: f64) -> Option<Self> {
-        Predictor::new(recording, mass, damping).map(Self::of)
+    /// Gains for a plant of about `mass` and `damping`; nothing where the recording is too short. Of a long one no samples are
+    /// needed that follow each other faster than `apart` s.
+    pub fn new(recording: &Recording, mass: f64, damping: f64, apart: f64) -> Option<Self> {
+        let all = Predictor::new(recording, mass, damping)?;
+        Some(Self::of(all.no_faster(apart, MOST_SAMPLES)))
     }
 
     /// The same where the recorded force has at least so much noise, N or N m.

@@ -208,7 +208,8 @@ impl FrictionFamily {
             (None, Some(mass)) => simple[0].max(0.02 * mass.start),
             (None, None) => simple[0],
         };
-        family.ahead = ahead::OneAhead::new(recording, mass, simple[1].max(0.0));
+        let apart = family.prepared.apart();
+        family.ahead = ahead::OneAhead::new(recording, mass, simple[1].max(0.0), apart);
         family.thinned = family.ahead.as_ref().and_then(ahead::OneAhead::thinned);
         Ok(family)
     }
@@ -661,10 +662,16 @@ impl ModelFamily for FrictionFamily {
         } else {
             self.hold.map(|hold| hold.remark(input))
         };
+        let together = self.ahead.as_ref().and_then(|ahead| {
+            let apart = ahead.predictor.interval();
+            let every = (apart / self.prepared.interval).round() as usize;
+            let input = self.quantity().name;
+            (every > 1).then_some(Remark::TakenTogether { input, every, apart })
+        });
         let (looked_at, pieces) = (self.recording.len(), self.recording.segments().len());
         let taken_from = self.recording.taken_from();
         let in_pieces = taken_from.map(|samples| Remark::InPieces { samples, looked_at, pieces });
-        read.into_iter().chain(smoothed).chain(in_pieces).collect()
+        read.into_iter().chain(smoothed).chain(together).chain(in_pieces).collect()
     }
 
     fn in_part(&self) -> Option<&Self> {

@@ -210,6 +210,11 @@ impl Prepared {
         (noise / rms(&self.compare(&self.acceleration)).max(f64::MIN_POSITIVE)).powi(2)
     }
 
+    /// Time from sample to sample, s, that the bandwidth needs: what lies between them is mostly noise of the position.
+    pub fn apart(&self) -> f64 {
+        BANDWIDTH / self.bandwidth
+    }
+
     fn with_bandwidth(mut self, relative: f64) -> Self {
         self.bandwidth = relative / self.interval;
         self.kernel = Kernel::new(relative);
@@ -508,6 +513,8 @@ mod tests {
         let acceleration = prepared.compare(&prepared.acceleration);
         let acceleration = errs(&acceleration, &|t| -1.8 * (6.0 * t).sin());
         assert!(velocity < 0.03 && acceleration < 0.3, "{velocity} {acceleration}");
+        assert!((prepared.apart() * prepared.bandwidth - BANDWIDTH).abs() < 1e-12);
+        assert!(prepared.apart() > 4.0 * prepared.interval);
         // As wide as the rate would allow it is mostly noise.
         let wide = Prepared::new(&recording, Some(200.0)).unwrap();
         assert!(rms(&wide.acceleration) > 20.0 * rms(&prepared.acceleration));

@@ -205,22 +205,34 @@ impl Predictor {
         })
     }
 
+    /// Whether it has clearly more than so many samples.
+    fn has_more_than(&self, most: usize) -> bool {
+        let all: usize = self.segments.iter().map(Range::len).sum();
+        all > most + most / 4
+    }
+
+    /// The same without samples that follow each other faster than `apart` s, where there are more than `most`.
+    #[must_use]
+    pub fn no_faster(self, apart: f64, most: usize) -> Self {
+        let coarser = if self.has_more_than(most) { self.coarser(apart) } else { None };
+        coarser.unwrap_or(self)
+    }
+
     /// The same on pieces of about `length` s, spread over the recording, that have `most` samples together, of which none are
     /// needed that follow each other faster than a step; nothing where the recording has no more.
     pub fn thinned(&self, most: usize, length: f64) -> Option<Self> {
-        let all: usize = self.segments.iter().map(Range::len).sum();
-        if all <= most + most / 4 {
+        if !self.has_more_than(most) {
             return None;
         }
-        let coarser = self.coarser();
+        let coarser = self.coarser(APART);
         let thinned = coarser.as_ref().unwrap_or(self).pieces(most, length);
         thinned.or(coarser)
     }
 
     /// The same with every so many samples only, the force averaged in between; nothing where no two of them lie within
-    /// [`APART`].
-    fn coarser(&self) -> Option<Self> {
-        let every = (APART / self.interval * (1.0 + 1e-6)) as usize;
+    /// `apart` s.
+    fn coarser(&self, apart: f64) -> Option<Self> {
+        let every = (apart / self.interval * (1.0 + 1e-6)) as usize;
         if every < 2 {
             return None;
         }
@@ -252,10 +264,10 @@ impl Predictor {
 
     /// The same on pieces; see [`Self::thinned`].
     fn pieces(&self, most: usize, length: f64) -> Option<Self> {
-        let all: usize = self.segments.iter().map(Range::len).sum();
-        if all <= most + most / 4 {
+        if !self.has_more_than(most) {
             return None;
         }
+        let all: usize = self.segments.iter().map(Range::len).sum();
         let share = most as f64 / all as f64;
         let parts = spread(&self.segments, share, |segment| {
             let interval =

@@ -314,6 +314,18 @@ fn of_samples_that_follow_each_other_fast_the_force_is_averaged() {
 }
 
 #[test]
+fn samples_are_taken_together_that_follow_each_other_faster_than_is_needed_where_there_are_many() {
+    let whole = predictor(&commanded_every(2.5e-4, &table(), Hold::ZeroOrder, QUIET, fast));
+    let samples = whole.time.len();
+    let coarser = whole.clone().no_faster(2e-3, samples / 2);
+    assert!((coarser.interval() - 2e-3).abs() < 1e-12 && coarser.time.len() == samples.div_ceil(8));
+    for (apart, most) in [(2e-3, samples), (2.5e-4, samples / 2), (4e-4, samples / 2)] {
+        let same = whole.clone().no_faster(apart, most);
+        assert_eq!(same.time.len(), samples, "{apart} {most}");
+    }
+}
+
+#[test]
 fn a_noise_of_the_force_suits_the_same_setting_where_it_is_averaged() {
     let sensors = Sensors { force: 2.0, ..QUIET };
     let whole = predictor(&commanded_every(5e-4, &table(), Hold::ZeroOrder, sensors, |t| {

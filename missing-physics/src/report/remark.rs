@@ -104,6 +104,16 @@ pub enum Remark {
         /// Cut-off of the filter, Hz.
         below: f64,
     },
+    /// Samples of a long recording follow each other faster than the position tells them apart from its noise: several were
+    /// taken together, the input averaged over them.
+    TakenTogether {
+        /// The input.
+        input: String,
+        /// Number of samples.
+        every: usize,
+        /// Time from one that was looked at to the next, s.
+        apart: f64,
+    },
     /// Another model gives the input.
     Given {
         /// The input.

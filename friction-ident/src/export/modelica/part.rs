@@ -145,6 +145,10 @@ impl Part {
                 smooth: "{dF_v}*exp(-time/{tau})*v".into(),
                 ..level("{dF_C}*exp(-time/{tau})")
             },
+            "drift:linear" => Self {
+                smooth: "{dF_v}*(time - {begin})/({finish} - {begin})*v".into(),
+                ..level("{dF_C}*(time - {begin})/({finish} - {begin})")
+            },
             "ripple" => smooth(&waves(2)),
             "ripple:harmonics" => smooth(&waves(6)),
             "ripple:direction" => Self {
