@@ -162,6 +162,7 @@ IN_MODELICA = (
     {"stribeck:exponential": {"dF": 4.0, "v_s": 2e-3, "delta": 1.0}},
     {"asymmetry": {"dF_C": 1.0, "dF_v": 30.0}, "spring": {"k": 100.0, "x_0": 0.1}},
     {"quadratic-drag": {"c": 20.0}, "shear-thinning": {"dF": 4.0, "v_n": 0.01}},
+    {"quadratic-drag:power": {"c": 20.0, "n": 1.7, "v_high": 0.4}},
     {"shear-thinning:eyring": {"dF": 1.0, "v_n": 0.01}},
     {"shear-thinning:cross": {"dF": 4.0, "v_n": 0.01, "m": 0.7}},
     {"drift": {"dF_C": 1.0, "dF_v": 30.0, "tau": 1.0}, "load-friction": {"mu": 0.05}},

@@ -1,12 +1,17 @@
 //! Drag that grows with the square of the speed: air, churning of the lubricant.
 
+mod power;
+
 use super::{About, CLaw, Effect, Motion, Parameter, Parameters, Slot, Smooth};
 use crate::axis::Quantity;
 use crate::simd::vectorised;
+use power::Power;
 
 /// `c v |v|`.
 #[derive(Clone, Copy, Debug)]
 pub struct QuadraticDrag;
+
+static FORMS: [&dyn Effect; 1] = [&Power];
 
 static ABOUT: About = About {
     name: "quadratic-drag",
@@ -21,6 +26,14 @@ static ABOUT: About = About {
 impl Effect for QuadraticDrag {
     fn about(&self) -> &'static About {
         &ABOUT
+    }
+
+    fn forms(&self) -> &'static [&'static dyn Effect] {
+        &FORMS
+    }
+
+    fn flexible_form(&self) -> Option<&'static str> {
+        Some(power::NAME)
     }
 
     fn may_be_overrated(&self) -> bool {

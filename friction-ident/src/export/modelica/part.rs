@@ -135,6 +135,7 @@ impl Part {
             ),
             "gravity-pendulum" => smooth("{M}*sin(x - {q_0})"),
             "quadratic-drag" => smooth("{c}*v*abs(v)"),
+            "quadratic-drag:power" => smooth("{c}*{v_high}*(abs(v)/{v_high})^({n} - 1)*v"),
             "shear-thinning" => smooth("{dF}*tanh(v/{v_n})"),
             "shear-thinning:eyring" => {
                 smooth("{dF}*sign(v)*log(abs(v)/{v_n} + sqrt(1 + (v/{v_n})^2))")
