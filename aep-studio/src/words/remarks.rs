@@ -70,6 +70,11 @@ pub fn remark(remark: &Remark) -> String {
              together, {} apart, the {input} averaged over them. What acts faster was not looked for.",
             quantity(*apart, "s")
         ),
+        Remark::EvenSamples { jitter } => format!(
+            "The time stamps jitter by {} of a sample, and the position does not move by that: it was sampled evenly. What is \
+             said is said of even samples.",
+            percent(*jitter)
+        ),
         Remark::Given { input, most_shift } => format!(
             "The {input} that your model gives is taken over time, nothing of ours beside it. What its samples and \
              filters make is fitted and no effect: a shift of up to {most_shift} samples (timing.shift) and a smoothing \

@@ -28,6 +28,7 @@ mod preparation;
 mod regimes;
 mod samples;
 mod smoothed;
+mod stamps;
 mod surrogates;
 mod sweep;
 #[cfg(test)]
@@ -103,6 +104,8 @@ pub struct FrictionFamily {
     other_hold: Option<Box<Self>>,
     /// The same with the bandwidth that is shown, where that is another than a search's.
     on_view: Option<Box<Self>>,
+    /// How far its stamps jittered where its samples do not, samples.
+    jitter: Option<f64>,
     /// The cut-off below which its force was taken, Hz.
     smoothing: Option<f64>,
     /// The same recording with the noise of its force smoothed away.
@@ -124,7 +127,17 @@ impl FrictionFamily {
     /// # Errors
     /// A channel is missing or constant, or too little of the recording moves.
     pub fn new(recording: &Recording, options: &Options) -> Result<Self, PreparationError> {
-        Self::of_any_length(recording, options)
+        let even = stamps::even(recording);
+        let read = even.as_ref().map_or(recording, |even| &even.recording);
+        let family = Self::of_any_length(read, options)?;
+        Ok(family.stamped(even.map(|even| even.jitter)))
+    }
+
+    /// The same of a recording whose stamps jittered so far.
+    fn stamped(mut self, jitter: Option<f64>) -> Self {
+        self.jitter = jitter;
+        self.other_hold = self.other_hold.map(|other| Box::new(other.stamped(jitter)));
+        self
     }
 
     /// What was decided about the force between samples, where the recording does not say it.
@@ -185,6 +198,7 @@ impl FrictionFamily {
             hold: None,
             other_hold: None,
             on_view: None,
+            jitter: None,
             smoothing: None,
             filtered: smoothed::Filtered::default(),
             part: None,
@@ -662,6 +676,7 @@ impl ModelFamily for FrictionFamily {
         } else {
             self.hold.map(|hold| hold.remark(input))
         };
+        let even = self.jitter.map(|jitter| Remark::EvenSamples { jitter });
         let together = self.ahead.as_ref().and_then(|ahead| {
             let apart = ahead.predictor.interval();
             let every = (apart / self.prepared.interval).round() as usize;
@@ -671,7 +686,7 @@ impl ModelFamily for FrictionFamily {
         let (looked_at, pieces) = (self.recording.len(), self.recording.segments().len());
         let taken_from = self.recording.taken_from();
         let in_pieces = taken_from.map(|samples| Remark::InPieces { samples, looked_at, pieces });
-        read.into_iter().chain(smoothed).chain(together).chain(in_pieces).collect()
+        read.into_iter().chain(smoothed).chain(even).chain(together).chain(in_pieces).collect()
     }
 
     fn in_part(&self) -> Option<&Self> {

@@ -45,7 +45,8 @@ impl FrictionFamily {
         // What did not act stays in the band of the filter: it is noise of a sensor.
         let noise = self.ahead.as_ref()?.predictor.noise().force_at_most;
         let ahead = family.ahead.as_ref().map(|ahead| ahead.with_force_noise(noise));
-        let family = Self { smoothing: Some(cutoff / self.prepared.interval), ahead, ..family };
+        let smoothing = Some(cutoff / self.prepared.interval);
+        let family = Self { smoothing, ahead, jitter: self.jitter, ..family };
         match &self.on_view {
             Some(shown) => family.shown_below(shown.prepared.bandwidth).ok(),
             None => Some(family),

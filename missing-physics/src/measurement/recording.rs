@@ -175,6 +175,19 @@ impl Recording {
         self
     }
 
+    /// The same at other instants, s.
+    ///
+    /// # Errors
+    /// They are as many no more, not finite somewhere, or do not increase inside a segment.
+    pub fn with_time(self, time: Vec<f64>) -> Result<Self, RecordingError> {
+        check_length("time", time.len(), self.len())?;
+        check_finite("time", &time)?;
+        for range in &self.segments {
+            check_increasing(&time, range)?;
+        }
+        Ok(Self { interval: interval(&time, &self.segments), time, ..self })
+    }
+
     /// The same with other channels.
     ///
     /// # Errors

@@ -114,6 +114,11 @@ pub enum Remark {
         /// Time from one that was looked at to the next, s.
         apart: f64,
     },
+    /// The time stamps jitter and the position does not move by them: the samples were taken as even.
+    EvenSamples {
+        /// Root mean square of what the stamps were off, samples.
+        jitter: f64,
+    },
     /// Another model gives the input.
     Given {
         /// The input.
