@@ -178,7 +178,7 @@ impl Recording {
     /// The same at other instants, s.
     ///
     /// # Errors
-    /// They are as many no more, not finite somewhere, or do not increase inside a segment.
+    /// They are not as many, not finite somewhere, or do not increase inside a segment.
     pub fn with_time(self, time: Vec<f64>) -> Result<Self, RecordingError> {
         check_length("time", time.len(), self.len())?;
         check_finite("time", &time)?;
