@@ -150,6 +150,12 @@ mod tests {
     }
 
     #[test]
+    fn even_samples_are_told_with_how_far_their_stamps_were_off() {
+        let told = remark(&Remark::EvenSamples { jitter: 0.0086 });
+        assert!(told.starts_with("The time stamps jitter by 0.86 % of a sample, and"), "{told}");
+    }
+
+    #[test]
     fn views_that_prefer_different_models_are_named_with_the_one_to_trust() {
         let between = Disagreement {
             judge: "force".into(),

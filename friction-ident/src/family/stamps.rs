@@ -8,6 +8,8 @@
 use std::ops::Range;
 
 use missing_physics::Recording;
+use missing_physics::ahead::statistics::spread;
+use missing_physics::statistics::basis::dot;
 
 /// Samples to either side over which a velocity is taken.
 const REACH: usize = 4;
@@ -96,34 +98,30 @@ pub(super) fn even(recording: &Recording) -> Option<Even> {
 /// The share of the second of each pair that is in the first, and its standard error; nothing where the second is too small
 /// beside the rest to matter.
 fn share(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
-    let of = |pairs: &[(f64, f64)], weight: &dyn Fn(f64, f64) -> f64| {
-        let sum = |of: fn(f64, f64) -> f64| -> f64 {
-            pairs.iter().map(|(y, z)| weight(*y, *z) * of(*y, *z)).sum()
-        };
-        (sum(|y, z| y * z), sum(|_, z| z * z))
-    };
-    let (both, square) = of(pairs, &|_, _| 1.0);
-    let first = both / square;
-    let mut off: Vec<f64> =
-        pairs.iter().filter(|(_, z)| *z != 0.0).map(|(y, z)| (y - first * z).abs()).collect();
-    let rest: f64 = off.iter().map(|off| off * off).sum();
-    if off.is_empty() || square <= MATTERS * MATTERS * rest {
+    let (both, square) = sums(pairs.iter());
+    let all = both / square;
+    let off = |(y, z): &(f64, f64)| y - all * z;
+    let rest: Vec<f64> = pairs.iter().filter(|(_, z)| *z != 0.0).map(off).collect();
+    if rest.is_empty() || square <= MATTERS * MATTERS * dot(&rest, &rest) {
         return None;
     }
-    let middle = off.len() / 2;
-    let (_, median, _) = off.select_nth_unstable_by(middle, f64::total_cmp);
-    let most = OUTLIER * 1.4826 * *median;
-    let weight = |y: f64, z: f64| f64::from(u8::from((y - first * z).abs() <= most));
-    let (both, square) = of(pairs, &weight);
+    let most = OUTLIER * spread(&rest);
+    let near = |pair: &&(f64, f64)| off(pair).abs() <= most;
+    let (both, square) = sums(pairs.iter().filter(near));
     if square <= 0.0 {
         return None;
     }
     let share = both / square;
     let blocks = pairs.chunks(BLOCK).map(|block| {
-        let (both, square) = of(block, &weight);
+        let (both, square) = sums(block.iter().filter(near));
         (both - share * square).powi(2)
     });
     Some((share, blocks.sum::<f64>().sqrt() / square))
+}
+
+/// Of the products of each pair, and of the squares of its second.
+fn sums<'a>(pairs: impl Iterator<Item = &'a (f64, f64)>) -> (f64, f64) {
+    pairs.fold((0.0, 0.0), |(both, square), (y, z)| (both + y * z, square + z * z))
 }
 
 #[cfg(test)]

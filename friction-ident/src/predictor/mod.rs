@@ -205,10 +205,13 @@ impl Predictor {
         })
     }
 
+    fn samples(&self) -> usize {
+        self.segments.iter().map(Range::len).sum()
+    }
+
     /// Whether it has clearly more than so many samples.
     fn has_more_than(&self, most: usize) -> bool {
-        let all: usize = self.segments.iter().map(Range::len).sum();
-        all > most + most / 4
+        self.samples() > most + most / 4
     }
 
     /// The same without samples that follow each other faster than `apart` s, where there are more than `most`.
@@ -267,8 +270,7 @@ impl Predictor {
         if !self.has_more_than(most) {
             return None;
         }
-        let all: usize = self.segments.iter().map(Range::len).sum();
-        let share = most as f64 / all as f64;
+        let share = most as f64 / self.samples() as f64;
         let parts = spread(&self.segments, share, |segment| {
             let interval =
                 (self.time[segment.end - 1] - self.time[segment.start]) / segment.len() as f64;
@@ -346,8 +348,7 @@ impl Predictor {
     /// Share of the samples that only repeat the one before although the axis moves.
     pub fn stale(&self) -> f64 {
         let stale = self.segments.iter().flat_map(|s| &self.stale[s.clone()]);
-        let all: usize = self.segments.iter().map(Range::len).sum();
-        stale.filter(|stale| **stale).count() as f64 / all as f64
+        stale.filter(|stale| **stale).count() as f64 / self.samples() as f64
     }
 
     /// Indices in the recording of the samples that count.
