@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use friction_ident::family::FrictionFamily;
 use missing_physics::report::Confirmed;
-use missing_physics::{Discovery, ModelFamily, confirm};
+use missing_physics::{Discovery, confirm};
 use pyo3::prelude::*;
 
 use crate::failure::bad_input;

@@ -8,7 +8,7 @@ use friction_ident::family::{Decides, ForeignModel, FrictionFamily, GivenModels,
 use friction_ident::simulator::free_run;
 use friction_ident::{Library, Model};
 use missing_physics::fit::{Fit, Until};
-use missing_physics::{Discovery, Extended, ModelFamily};
+use missing_physics::{Discovery, Extended};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 

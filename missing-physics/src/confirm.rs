@@ -7,7 +7,7 @@ use crate::ahead::compare::Comparison;
 use crate::ahead::fit;
 use crate::ahead::node::Node;
 use crate::diagnosis;
-use crate::family::{Ahead, Fitted, ModelFamily, Own};
+use crate::family::{Ahead, Fitted, ModelFamily, Own, on_view};
 use crate::fit::as_given;
 use crate::report::{Confirmation, NamedError, NamedValue, Rung};
 use crate::statistics::split::Split;
@@ -21,8 +21,8 @@ const STEPS: usize = 10;
 ///
 /// # Errors
 /// An effect of the ladder is not among the family's terms.
-pub fn confirm<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn confirm(
+    family: &dyn ModelFamily,
     ladder: &[Rung],
     settings: &Settings<'_>,
 ) -> Result<Vec<Confirmation>, DiscoverError> {
@@ -37,8 +37,8 @@ pub fn confirm<F: ModelFamily + ?Sized>(
 
 /// Every rung by its prediction errors: as it was found but for what belongs to a recording, and with all parameters
 /// fitted here.
-fn one_ahead<F: ModelFamily + ?Sized>(
-    family: &F,
+fn one_ahead(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     ladder: &[Rung],
     settings: &Settings<'_>,
@@ -78,8 +78,8 @@ fn one_ahead<F: ModelFamily + ?Sized>(
 }
 
 /// The errors of a rung with the parameters of `model`.
-fn as_it_is<F: ModelFamily + ?Sized>(family: &F, rung: &Rung, model: Fitted) -> Confirmation {
-    let family = family.on_view();
+fn as_it_is(family: &dyn ModelFamily, rung: &Rung, model: Fitted) -> Confirmation {
+    let family = on_view(family);
     let fit = as_given(family, model);
     let points = family.target().len();
     let split = Split::new(points, family.blocks());

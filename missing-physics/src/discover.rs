@@ -12,8 +12,8 @@ use crate::task::{DiscoverError, Event, Observer, Settings, terms, terms_of_mode
 ///
 /// # Errors
 /// When a name in the settings is unknown.
-pub fn discover<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn discover(
+    family: &dyn ModelFamily,
     settings: &Settings<'_>,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {
@@ -28,8 +28,8 @@ pub fn discover<F: ModelFamily + ?Sized>(
 
 /// The same for a family that only gives residuals: those of the base model, fitted to all of the recording, show how
 /// large the noise is.
-fn by_residuals<F: ModelFamily + ?Sized>(
-    family: &F,
+fn by_residuals(
+    family: &dyn ModelFamily,
     settings: &Settings<'_>,
     sets: (&[usize], &[usize]),
     observer: &mut (dyn Observer + Send),
@@ -54,8 +54,8 @@ fn by_residuals<F: ModelFamily + ?Sized>(
 ///
 /// # Errors
 /// When a name is unknown.
-pub fn suggest<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn suggest(
+    family: &dyn ModelFamily,
     settings: &Settings<'_>,
     observer: &mut (dyn Observer + Send),
 ) -> Result<Discovery, DiscoverError> {

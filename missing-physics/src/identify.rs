@@ -13,8 +13,8 @@ use crate::task::{DiscoverError, terms_of_model};
 ///
 /// # Errors
 /// When a name is unknown.
-pub fn identify<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn identify(
+    family: &dyn ModelFamily,
     names: &[String],
     method: (&dyn Method<f64>, u64),
     until: Until<'_>,
@@ -35,8 +35,8 @@ pub struct Extended {
 ///
 /// # Errors
 /// When the name is unknown.
-pub fn extend<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn extend(
+    family: &dyn ModelFamily,
     before: &Fit,
     added: &str,
     seed: u64,

@@ -13,11 +13,7 @@ const LEAST: f64 = 0.2;
 
 /// A model at given values by its prediction errors at the setting that suits it best: residuals, and derivatives of the
 /// prediction by each parameter on its own scale. It has no prediction.
-pub fn prediction_fit<F: ModelFamily + ?Sized>(
-    family: &F,
-    ahead: &dyn Ahead,
-    model: &Fitted,
-) -> Fit {
+pub fn prediction_fit(family: &dyn ModelFamily, ahead: &dyn Ahead, model: &Fitted) -> Fit {
     let setting = best_setting(ahead, model);
     let moved = |sign: f64| {
         model.parameters(family).enumerate().map(move |(k, (_, parameter))| {

@@ -11,7 +11,7 @@ use aep_data::{Axes, Loaded};
 use aep_studio::words;
 use friction_ident::Known;
 use friction_ident::family::{Decides, FrictionFamily};
-use missing_physics::{Discovery, Fitted, ModelFamily, Settings, Thresholds, discover, model_of};
+use missing_physics::{Discovery, Fitted, Settings, Thresholds, discover, model_of};
 use missing_physics::measurement::check::check;
 use missing_physics::report::{Combinations, Confirmed, Rung, Verdict};
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use aep_studio::words;
 use friction_ident::family::Decides;
-use missing_physics::{ModelFamily, likely, suggest};
+use missing_physics::{likely, suggest};
 use missing_physics::measurement::check::check;
 use missing_physics::report::Combinations;
 

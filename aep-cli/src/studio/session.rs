@@ -100,7 +100,7 @@ impl Session {
         &self,
         id: u32,
         (family, model): (&FrictionFamily, &Model),
-        hand: &ByHand<'_, FrictionFamily>,
+        hand: &ByHand<'_>,
     ) -> Result<Arc<Node>, Failure> {
         if let Some(known) = lock(&self.nodes).get(&id) {
             return Ok(known.clone());

@@ -190,7 +190,7 @@ type Run<'a> = (&'a AtomicBool, Tell<'a>);
 fn by_hand<T>(
     family: &FrictionFamily,
     (stop, tell): Run<'_>,
-    fit: impl FnOnce(&ByHand<'_, FrictionFamily>) -> Result<T, Failure>,
+    fit: impl FnOnce(&ByHand<'_>) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let over = || stop.load(Ordering::Relaxed);
     let told = |event: &Event<'_>| tell(heard(event));

@@ -279,7 +279,7 @@ fn tank(seed: u64, memory: f64, hidden: Hidden) -> Discovery {
     found(&family, &[], seed)
 }
 
-fn found<F: ModelFamily>(family: &F, base: &[&str], seed: u64) -> Discovery {
+fn found(family: &dyn ModelFamily, base: &[&str], seed: u64) -> Discovery {
     let base = base.iter().map(|name| (*name).to_owned()).collect();
     let settings = Settings { base, seed, ..Settings::default() };
     discover(family, &settings, &mut ()).expect("the names are the family's own")

@@ -544,8 +544,8 @@ impl ModelFamily for FrictionFamily {
         &self.terms
     }
 
-    fn on_view(&self) -> &Self {
-        self.on_view.as_deref().unwrap_or(self)
+    fn shown(&self) -> Option<&dyn ModelFamily> {
+        Some(self.on_view())
     }
 
     fn quantity(&self) -> ComparedQuantity {
@@ -655,13 +655,13 @@ impl ModelFamily for FrictionFamily {
         Some(Box::new(ahead::View::new(self, ahead)))
     }
 
-    fn other_reading(&self) -> Option<OtherReading<'_, Self>> {
+    fn other_reading(&self) -> Option<OtherReading<'_>> {
         let HoldChoice { nats, by_search, .. } = self.hold?;
         Some(OtherReading { family: self.other_hold.as_deref()?, nats, decided: !by_search })
     }
 
-    fn without_noise(&self, more: usize) -> Option<&Self> {
-        self.filtered(more)
+    fn without_noise(&self, more: usize) -> Option<&dyn ModelFamily> {
+        Some(self.filtered(more)?)
     }
 
     fn without_lateness(&self, model: &Fitted) -> Fitted {
@@ -689,8 +689,8 @@ impl ModelFamily for FrictionFamily {
         read.into_iter().chain(smoothed).chain(even).chain(together).chain(in_pieces).collect()
     }
 
-    fn in_part(&self) -> Option<&Self> {
-        self.part.as_deref()
+    fn in_part(&self) -> Option<&dyn ModelFamily> {
+        Some(self.part.as_deref()?)
     }
 
     fn ahead_in_part(&self) -> Option<Box<dyn Ahead + '_>> {

@@ -9,6 +9,11 @@ use super::{FrictionFamily, Options};
 use crate::family::preparation::PreparationError;
 
 impl FrictionFamily {
+    /// The same as people are shown it: itself, but where another bandwidth was asked for.
+    pub fn on_view(&self) -> &Self {
+        self.on_view.as_deref().unwrap_or(self)
+    }
+
     /// Prepares a recording for a search, as [`FrictionFamily::new`] does: the bandwidth that is chosen is that of what is shown.
     ///
     /// # Errors

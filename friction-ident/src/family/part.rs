@@ -48,7 +48,6 @@ impl FrictionFamily {
 
 #[cfg(test)]
 mod tests {
-    use missing_physics::family::OtherReading;
     use missing_physics::report::Remark;
     use missing_physics::{Channel, ModelFamily};
 
@@ -80,12 +79,12 @@ mod tests {
         let all = recording(MOST + MOST / 4 + 1);
         let family = FrictionFamily::new(&all, &Options::default()).unwrap();
         assert_eq!(family.recording.len(), all.len());
-        let part = family.in_part().unwrap();
+        let part = family.part.as_deref().unwrap();
         assert!(part.recording.len() < all.len() && part.terms.len() == family.terms.len());
         assert_eq!(part.stroke, family.stroke);
         let hold = family.hold().unwrap().hold;
         assert_eq!((family.recording.hold(), part.recording.hold()), (hold, hold));
-        if let Some(OtherReading { family: other, .. }) = family.other_reading() {
+        if let Some(other) = &family.other_hold {
             assert_ne!(other.recording.hold(), hold);
             assert_eq!(other.recording.len(), all.len());
         }

@@ -9,29 +9,29 @@ use super::residuals::Residuals;
 use crate::family::{Fitted, ModelFamily};
 
 /// A recording as it is read: how its input acts between samples.
-pub struct Reading<'a, F: ModelFamily + ?Sized> {
-    pub(super) family: &'a F,
+pub struct Reading<'a> {
+    pub(super) family: &'a dyn ModelFamily,
     pub(super) whole: Box<dyn Ahead + 'a>,
     pub(super) part: Option<Box<dyn Ahead + 'a>>,
     /// Whether the errors are residuals.
     pub(super) residuals: bool,
 }
 
-impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
+impl<'a> Reading<'a> {
     /// That of a family that predicts one sample ahead.
-    pub fn of(family: &'a F) -> Option<Self> {
+    pub fn of(family: &'a dyn ModelFamily) -> Option<Self> {
         let (whole, part) = (family.ahead()?, family.ahead_in_part());
         Some(Self { family, whole, part, residuals: false })
     }
 
     /// The same, more of it searched.
-    pub(super) fn longer(family: &'a F) -> Option<Self> {
+    pub(super) fn longer(family: &'a dyn ModelFamily) -> Option<Self> {
         let (whole, part) = (family.ahead()?, family.ahead_in_longer_part());
         Some(Self { family, whole, part, residuals: false })
     }
 
     /// That of a family that only gives residuals, whose noise the residual of `base` shows.
-    pub fn of_residuals(family: &'a F, base: &Fitted) -> Self {
+    pub fn of_residuals(family: &'a dyn ModelFamily, base: &Fitted) -> Self {
         Self { family, whole: Box::new(Residuals::new(family, base)), part: None, residuals: true }
     }
 
@@ -46,7 +46,7 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
     }
 
     /// The same, its errors judged by what an autoregression leaves of them.
-    pub(super) fn coloured(&self) -> Option<Reading<'_, F>> {
+    pub(super) fn coloured(&self) -> Option<Reading<'_>> {
         let part = self.part.as_ref().map(|part| part.coloured());
         let whole = self.whole.coloured()?;
         let part = part.flatten();
@@ -64,20 +64,20 @@ impl<'a, F: ModelFamily + ?Sized> Reading<'a, F> {
 }
 
 /// The other way to read a recording.
-pub(super) struct Other<'a, F: ModelFamily + ?Sized> {
-    pub(super) reading: Reading<'a, F>,
+pub(super) struct Other<'a> {
+    pub(super) reading: Reading<'a>,
     /// By how many nats the simplest model prefers the first, and whether that decides until effects say otherwise.
     pub(super) nats: f64,
     pub(super) decided: bool,
 }
 
-impl<F: ModelFamily + ?Sized> Other<'_, F> {
-    pub(super) fn coloured(&self) -> Option<Other<'_, F>> {
+impl Other<'_> {
+    pub(super) fn coloured(&self) -> Option<Other<'_>> {
         Some(Other { reading: self.reading.coloured()?, ..*self })
     }
 
     /// The same, more of it searched.
-    pub(super) fn longer(&self) -> Option<Other<'_, F>> {
+    pub(super) fn longer(&self) -> Option<Other<'_>> {
         Some(Other { reading: Reading::longer(self.reading.family)?, ..*self })
     }
 }

@@ -14,11 +14,7 @@ use crate::report::Astray;
 const SHARES: [f64; 3] = [1.0, 1.0 / 3.0, 1.0 / 9.0];
 
 /// Other places of what every model has from which effects are fitted: where the base model is far from where it `began`.
-pub fn elsewhere<F: ModelFamily + ?Sized>(
-    family: &F,
-    began: &Fitted,
-    base: &Fitted,
-) -> Vec<Fitted> {
+pub fn elsewhere(family: &dyn ModelFamily, began: &Fitted, base: &Fitted) -> Vec<Fitted> {
     let known = scales::of(family, base).into_iter().map(|moved| moved.is_known());
     let known: Vec<bool> = known.collect();
     let far = |k: usize| {
@@ -40,7 +36,7 @@ pub fn elsewhere<F: ModelFamily + ?Sized>(
 
 /// A start in which what every model has is where a search begins, where the balance makes it as small as it may be: of what
 /// it hardly sees it knows nothing, and from there no fit comes back.
-pub fn seen<F: ModelFamily + ?Sized>(family: &F, mut start: Fitted) -> Fitted {
+pub fn seen(family: &dyn ModelFamily, mut start: Fitted) -> Fitted {
     let moved = scales::of(family, &start);
     let parameters = start.parameters(family).zip(&moved).enumerate();
     let least = parameters.filter_map(|(k, ((_, parameter), moved))| {
@@ -57,11 +53,7 @@ pub fn seen<F: ModelFamily + ?Sized>(family: &F, mut start: Fitted) -> Fitted {
 /// far smaller or as small as it may be. Noise makes what the balance says too small: what is smaller still is so by more than
 /// that. It is asked of what predicts; of residuals the balance is the model itself, and what every model has may be as good as
 /// nothing.
-pub fn astray<F: ModelFamily + ?Sized>(
-    family: &F,
-    model: &Fitted,
-    either_way: bool,
-) -> Option<Astray> {
+pub fn astray(family: &dyn ModelFamily, model: &Fitted, either_way: bool) -> Option<Astray> {
     let near = family.in_part().unwrap_or(family);
     let everywhere = vec![1.0; near.target().len()];
     let balance = fit::refine(near, model.clone().within(near), &everywhere).model;

@@ -87,10 +87,10 @@ impl Climb {
 }
 
 /// A running search.
-pub struct Search<'a, F: ModelFamily + ?Sized> {
-    family: &'a F,
+pub struct Search<'a> {
+    family: &'a dyn ModelFamily,
     ahead: &'a dyn Ahead,
-    comparison: Comparison<'a, F>,
+    comparison: Comparison<'a>,
     thresholds: Thresholds,
     /// Terms that may be added.
     candidates: Vec<usize>,
@@ -111,10 +111,10 @@ pub struct Search<'a, F: ModelFamily + ?Sized> {
     pub all_or_nothing: bool,
 }
 
-impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
+impl<'a> Search<'a> {
     /// A search among `candidates` that ends early where `stop` says so.
     pub fn new(
-        family: &'a F,
+        family: &'a dyn ModelFamily,
         ahead: &'a dyn Ahead,
         thresholds: Thresholds,
         candidates: Vec<usize>,
@@ -139,7 +139,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         }
     }
 
-    fn fitter(&self) -> Fitter<'a, F> {
+    fn fitter(&self) -> Fitter<'a> {
         Fitter::new(self.family, self.ahead).stopped_by(self.stop)
     }
 
@@ -158,7 +158,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.base_by(self.fitter(), start)
     }
 
-    fn base_by(&self, fitter: Fitter<'_, F>, start: Fitted) -> Node {
+    fn base_by(&self, fitter: Fitter<'_>, start: Fitted) -> Node {
         let half = self.ahead.settings() / 2;
         // From much process noise to little: the valley narrows.
         let mut node = fitter.fit(start, half - 1, BASE);
@@ -178,7 +178,7 @@ impl<'a, F: ModelFamily + ?Sized> Search<'a, F> {
         self.near_by(self.fitter(), start)
     }
 
-    fn near_by(&self, fitter: Fitter<'_, F>, start: Fitted) -> Node {
+    fn near_by(&self, fitter: Fitter<'_>, start: Fitted) -> Node {
         let setting = fit::best_setting(self.ahead, &start);
         fitter.refit(start, setting, STEPS.0)
     }

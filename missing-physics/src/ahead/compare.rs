@@ -54,8 +54,8 @@ fn above(deviations: f64) -> f64 {
 }
 
 /// Held-out losses of models, and what all comparisons share.
-pub struct Comparison<'a, F: ModelFamily + ?Sized> {
-    family: &'a F,
+pub struct Comparison<'a> {
+    family: &'a dyn ModelFamily,
     ahead: &'a dyn Ahead,
     /// Fold of each instant.
     fold: Vec<usize>,
@@ -64,9 +64,9 @@ pub struct Comparison<'a, F: ModelFamily + ?Sized> {
     blocks: usize,
 }
 
-impl<'a, F: ModelFamily + ?Sized> Comparison<'a, F> {
+impl<'a> Comparison<'a> {
     /// For the recording of `ahead`.
-    pub fn new(family: &'a F, ahead: &'a dyn Ahead) -> Self {
+    pub fn new(family: &'a dyn ModelFamily, ahead: &'a dyn Ahead) -> Self {
         let first = ahead.instants().first().map_or(0.0, |i| i.0);
         let number = |length: f64| -> Vec<usize> {
             let mut count = 0;
@@ -178,7 +178,7 @@ fn better<'n>(a: &'n Node, b: &'n Node) -> &'n Node {
 /// What is expected of the amplitudes of effects where the data say nothing: 0, give or take what those of the same
 /// effect and unit are (an empirical prior, B. Efron and C. Morris, 1975). 1 over the variance of each parameter; 0 for those
 /// that are no amplitude of an effect.
-fn expected<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<f64> {
+fn expected(family: &dyn ModelFamily, model: &Fitted) -> Vec<f64> {
     let parameters: Vec<_> = model.parameters(family).zip(&model.values).collect();
     let counts = |term: &Term, p: &TermParameter| !term.always && p.role == Role::Amplitude;
     let each = parameters.iter().map(|((term, p), _)| {

@@ -23,29 +23,22 @@ const MOVES: usize = 3;
 const SETTING_CUT: f64 = 25.0;
 
 /// Fits models of a family to one recording, as long as nobody asks it to stop.
-pub struct Fitter<'a, F: ModelFamily + ?Sized> {
-    family: &'a F,
+#[derive(Clone, Copy)]
+pub struct Fitter<'a> {
+    family: &'a dyn ModelFamily,
     ahead: &'a dyn Ahead,
     stop: &'a (dyn Fn() -> bool + Sync),
     held: bool,
 }
 
-impl<F: ModelFamily + ?Sized> Clone for Fitter<'_, F> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<F: ModelFamily + ?Sized> Copy for Fitter<'_, F> {}
-
-impl<'a, F: ModelFamily + ?Sized> Fitter<'a, F> {
+impl<'a> Fitter<'a> {
     /// One that nothing stops.
-    pub fn new(family: &'a F, ahead: &'a dyn Ahead) -> Self {
+    pub fn new(family: &'a dyn ModelFamily, ahead: &'a dyn Ahead) -> Self {
         Self { family, ahead, stop: &|| false, held: false }
     }
 
     /// The family that its models are of.
-    pub fn family(&self) -> &'a F {
+    pub fn family(&self) -> &'a dyn ModelFamily {
         self.family
     }
 
@@ -108,8 +101,8 @@ pub fn evaluated(ahead: &dyn Ahead, model: Fitted, setting: usize) -> Node {
 }
 
 /// The next node and whether the fit has converged; nothing where no damping leads down.
-fn step<F: ModelFamily + ?Sized>(
-    family: &F,
+fn step(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     node: &Node,
     damping: &mut f64,

@@ -89,7 +89,7 @@ impl Found {
     }
 
     /// Sets of added terms that cannot be told from the one that was found.
-    pub fn as_good<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<&[usize]> {
+    pub fn as_good(&self, family: &dyn ModelFamily) -> Vec<&[usize]> {
         let sets = self.sets.get(self.added.len()).map_or(&[][..], Vec::as_slice);
         let is_it = |set: &[usize]| self.added.iter().all(|t| Self::is_in(set, *t, family));
         let Some((_, found)) = sets.iter().find(|(set, _)| is_it(set)) else { return Vec::new() };
@@ -98,7 +98,7 @@ impl Found {
     }
 
     /// Whether a term, in whatever form, is among `terms`.
-    pub fn is_in<F: ModelFamily + ?Sized>(terms: &[usize], term: usize, family: &F) -> bool {
+    pub fn is_in(terms: &[usize], term: usize, family: &dyn ModelFamily) -> bool {
         let main = |t: usize| family.form_of(t).unwrap_or(t);
         terms.iter().any(|other| main(*other) == main(term))
     }

@@ -11,8 +11,8 @@ use crate::fit::{Fit, uncertainty};
 use crate::report::Estimate;
 
 /// Every parameter of a model by its key, with its 95 % interval.
-pub fn of<F: ModelFamily + ?Sized>(
-    (family, ahead): (&F, &dyn Ahead),
+pub fn of(
+    (family, ahead): (&dyn ModelFamily, &dyn Ahead),
     node: &Node,
 ) -> BTreeMap<String, Estimate> {
     of_fit(family, &as_prediction((family, ahead), node))
@@ -21,8 +21,8 @@ pub fn of<F: ModelFamily + ?Sized>(
 /// The largest of these amplitudes of an effect (all by their places among its parameters), and its interval where the others
 /// of them keep their proportion to it and the effect's shapes are known: of several that make up for each other none need be
 /// known for the effect to be.
-pub fn of_size<F: ModelFamily + ?Sized>(
-    (family, ahead): (&F, &dyn Ahead),
+pub fn of_size(
+    (family, ahead): (&dyn ModelFamily, &dyn Ahead),
     node: &Node,
     place: usize,
     amplitudes: &[usize],
@@ -51,12 +51,12 @@ pub fn of_size<F: ModelFamily + ?Sized>(
     Some((largest, of_fit(family, &fit).remove(&term.key(&term.parameters[largest]))?))
 }
 
-fn of_fit<F: ModelFamily + ?Sized>(family: &F, fit: &Fit) -> BTreeMap<String, Estimate> {
+fn of_fit(family: &dyn ModelFamily, fit: &Fit) -> BTreeMap<String, Estimate> {
     uncertainty::estimates(family, fit, &vec![1.0; fit.residual.len()])
 }
 
 /// The node as the estimator of intervals wants it.
-fn as_prediction<F: ModelFamily + ?Sized>((family, ahead): (&F, &dyn Ahead), node: &Node) -> Fit {
+fn as_prediction((family, ahead): (&dyn ModelFamily, &dyn Ahead), node: &Node) -> Fit {
     let moved = scales::of(family, &node.model);
     let jacobian = node.jacobian(family, ahead).iter().zip(&moved);
     let parameters = node.model.parameters(family);

@@ -14,7 +14,7 @@ use super::reading;
 use super::refused::as_read;
 use super::report::Report;
 use super::sought::{PAIR, Sought};
-use crate::family::{Fitted, ModelFamily, OtherReading};
+use crate::family::{Fitted, OtherReading};
 use crate::fit;
 use crate::report::{Decision, Discovery, Remark};
 use crate::task::{Event, Observer, Settings, Thresholds};
@@ -24,8 +24,8 @@ use crate::task::{Event, Observer, Settings, Thresholds};
 /// What is missing colours the errors, and errors that resemble their neighbours weigh little: where several strong
 /// effects are missing none of them is seen beside the others. A second look judges what an autoregression leaves of the
 /// errors. What it finds counts where it leaves nothing.
-pub fn discover<F: ModelFamily + ?Sized>(
-    here: &Reading<'_, F>,
+pub fn discover(
+    here: &Reading<'_>,
     settings: &Settings<'_>,
     sets: (&[usize], &[usize]),
     observer: &mut (dyn Observer + Send),
@@ -67,13 +67,13 @@ pub fn discover<F: ModelFamily + ?Sized>(
 }
 
 /// A search in one reading that has looked at sets of one effect.
-struct Pursuit<'a, F: ModelFamily + ?Sized> {
-    reading: &'a Reading<'a, F>,
-    search: Search<'a, F>,
+struct Pursuit<'a> {
+    reading: &'a Reading<'a>,
+    search: Search<'a>,
     climb: Climb,
 }
 
-impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
+impl Pursuit<'_> {
     fn is_complete(&self) -> bool {
         self.search.is_complete(self.climb.top().0)
     }
@@ -87,7 +87,7 @@ impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
     }
 
     /// Whether the best model with an effect, which leaves more than the sensors make, predicts better in another reading.
-    fn is_better_in(&self, other: &Reading<'_, F>, stop: &(dyn Fn() -> bool + Sync)) -> bool {
+    fn is_better_in(&self, other: &Reading<'_>, stop: &(dyn Fn() -> bool + Sync)) -> bool {
         let (top, effects) = self.climb.top();
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
         effects > 0 && !self.is_complete() && !stop() && reading::is_better(top, &fitter)
@@ -98,17 +98,17 @@ impl<F: ModelFamily + ?Sized> Pursuit<'_, F> {
 const LEAST_ASKED: u32 = 4;
 
 /// The same in each reading that the recording allows.
-struct Begun<'a, F: ModelFamily + ?Sized> {
-    here: Pursuit<'a, F>,
+struct Begun<'a> {
+    here: Pursuit<'a>,
     /// The other one, and by how many nats the simplest model prefers the first.
-    there: Option<(Pursuit<'a, F>, f64)>,
+    there: Option<(Pursuit<'a>, f64)>,
     thresholds: Thresholds,
     stop: &'a (dyn Fn() -> bool + Sync),
     /// When time is up.
     until: Option<Instant>,
 }
 
-impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
+impl<'a> Begun<'a> {
     /// Whether one effect, or none, leaves no more than the sensors make.
     fn is_complete(&self) -> bool {
         self.here.is_complete() || self.there.as_ref().is_some_and(|(there, _)| there.is_complete())
@@ -121,7 +121,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
     }
 
     /// What is found in the reading that stands: on all of the recording, judged.
-    fn finished(self) -> Sought<'a, F> {
+    fn finished(self) -> Sought<'a> {
         let (thresholds, until, stop) = (self.thresholds, self.until, self.stop);
         let (reading, found) = self.found();
         let (family, whole) = (reading.family, &*reading.whole);
@@ -144,7 +144,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
     }
 
     /// What is found in the reading that stands, as far as it was searched.
-    fn found(self) -> (&'a Reading<'a, F>, Found) {
+    fn found(self) -> (&'a Reading<'a>, Found) {
         let Self { here, there, thresholds, stop, .. } = self;
         let reading = here.reading;
         let Some((there, nats)) = there else {
@@ -166,7 +166,7 @@ impl<'a, F: ModelFamily + ?Sized> Begun<'a, F> {
             if stop() { None } else { reading::with_less(top, added, &fitter, better) }
         };
         // What is found there, where that is to be preferred.
-        let there = |second: Pursuit<'a, F>, led: Node, top: (&Node, usize)| {
+        let there = |second: Pursuit<'a>, led: Node, top: (&Node, usize)| {
             let there = second.search.finish_led(second.climb, led);
             Some(there).filter(|there| preferred(there.top(), top) > 0.0)
         };
@@ -207,11 +207,11 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     /// What one look finds, or two.
-    fn looked<F: ModelFamily + ?Sized, R>(
+    fn looked<R>(
         &self,
-        here: &Reading<'_, F>,
-        there: Option<&Other<'_, F>>,
-        tell: impl FnOnce(Sought<'_, F>) -> R,
+        here: &Reading<'_>,
+        there: Option<&Other<'_>>,
+        tell: impl FnOnce(Sought<'_>) -> R,
     ) -> R {
         let (most, stop) = (self.thresholds.most, self.stop);
         let coloured = here.coloured();
@@ -255,13 +255,9 @@ impl<'a> Run<'a> {
     }
 
     /// A search in either reading that has looked at sets of one effect.
-    fn begun<F: ModelFamily + ?Sized>(
-        &self,
-        here: &'a Reading<'a, F>,
-        there: Option<&'a Other<'a, F>>,
-    ) -> Begun<'a, F> {
+    fn begun(&self, here: &'a Reading<'a>, there: Option<&'a Other<'a>>) -> Begun<'a> {
         let first = || self.pursuit(here, Search::base);
-        let second = |there: &'a Other<'a, F>| self.pursuit(&there.reading, Search::base_in_time);
+        let second = |there: &'a Other<'a>| self.pursuit(&there.reading, Search::base_in_time);
         let (first, second) = match there {
             Some(there) if !there.decided => {
                 let (first, second) = rayon::join(first, || second(there));
@@ -283,11 +279,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn pursuit<F: ModelFamily + ?Sized>(
+    fn pursuit(
         &self,
-        reading: &'a Reading<'a, F>,
-        base_of: fn(&Search<'a, F>, Fitted) -> Node,
-    ) -> Pursuit<'a, F> {
+        reading: &'a Reading<'a>,
+        base_of: fn(&Search<'a>, Fitted) -> Node,
+    ) -> Pursuit<'a> {
         let (family, ahead) = (reading.family, reading.searched());
         let (base, excluded) = self.sets;
         let candidates: Vec<usize> = (0..family.terms().len())
@@ -326,9 +322,9 @@ impl<'a> Run<'a> {
     }
 
     /// What was found, as a discovery; once more where noise of the input is in the way.
-    fn told<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
+    fn told(&self, sought: Sought<'_>) -> Discovery {
         // Only what is told: another look must not stand for want of this one.
-        let judged = |sought: &Sought<'_, F>| {
+        let judged = |sought: &Sought<'_>| {
             let mut found = sought.found.clone();
             let ahead = sought.reading.asked(sought.on_part);
             found.judge_force(sought.reading.family, ahead, &self.thresholds);
@@ -347,11 +343,7 @@ impl<'a> Run<'a> {
 
     /// The reading in which noise of the input is smoothed away, as much of it as lets a model predict best, where that is better
     /// than with effects that make the input late, or than where something is left.
-    fn without_noise<'f, F: ModelFamily + ?Sized>(
-        &self,
-        sought: &Sought<'f, F>,
-        nothing_is_left: bool,
-    ) -> Option<Reading<'f, F>> {
+    fn without_noise<'f>(&self, sought: &Sought<'f>, nothing_is_left: bool) -> Option<Reading<'f>> {
         let Sought { reading, found, on_part } = sought;
         let (top, effects) = found.top();
         let without = reading.family.without_lateness(&top.model);
@@ -361,7 +353,7 @@ impl<'a> Run<'a> {
         if !is_kept || late == 0 && nothing_is_left {
             return None;
         }
-        let mut best: Option<(Reading<'f, F>, f64)> = None;
+        let mut best: Option<(Reading<'f>, f64)> = None;
         let families = (0..).map_while(|more| reading.family.without_noise(more));
         for family in families {
             let smoothed = Reading::of(family).filter(|_| !(self.stop)())?;
@@ -381,7 +373,7 @@ impl<'a> Run<'a> {
         best.filter(|(_, gain)| *gain > 0.0).map(|(smoothed, _)| smoothed)
     }
 
-    fn reported<F: ModelFamily + ?Sized>(&self, sought: Sought<'_, F>) -> Discovery {
+    fn reported(&self, sought: Sought<'_>) -> Discovery {
         (self.tell)(&Event::Finishing);
         let Sought { reading, mut found, on_part } = sought;
         let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);

@@ -79,7 +79,7 @@ impl Node {
     }
 
     /// Derivatives of the errors with respect to the parameters on their scales.
-    pub fn jacobian<F: ModelFamily + ?Sized>(&self, family: &F, ahead: &dyn Ahead) -> &[Vec<f64>] {
+    pub fn jacobian(&self, family: &dyn ModelFamily, ahead: &dyn Ahead) -> &[Vec<f64>] {
         self.jacobian.get_or_init(|| {
             let moved = scales::of(family, &self.model);
             let trials: Vec<Fitted> = (0..moved.len())
@@ -142,12 +142,12 @@ impl Node {
     }
 
     /// Terms without those that every model has.
-    pub fn effects<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<usize> {
+    pub fn effects(&self, family: &dyn ModelFamily) -> Vec<usize> {
         self.model.terms.iter().copied().filter(|t| !family.terms()[*t].always).collect()
     }
 
     /// Their names.
-    pub fn names<F: ModelFamily + ?Sized>(&self, family: &F) -> Vec<String> {
+    pub fn names(&self, family: &dyn ModelFamily) -> Vec<String> {
         self.effects(family).iter().map(|t| family.terms()[*t].name.clone()).collect()
     }
 }

@@ -10,7 +10,6 @@ use super::Ahead;
 use super::fit::Fitter;
 use super::foretold::is_foretold;
 use super::node::Node;
-use crate::family::ModelFamily;
 
 /// Steps of a fit in the other reading.
 const STEPS: usize = 6;
@@ -32,12 +31,7 @@ pub fn nats(ahead: &dyn Ahead, here: (&Node, usize), there: (&Node, usize), bett
 
 /// A model without one of the effects that were `added` to it, where the other reading, whose `fitter` this is, does as
 /// well without.
-pub fn with_less<F: ModelFamily + ?Sized>(
-    top: &Node,
-    added: &[usize],
-    fitter: &Fitter<'_, F>,
-    better: f64,
-) -> Option<Node> {
+pub fn with_less(top: &Node, added: &[usize], fitter: &Fitter<'_>, better: f64) -> Option<Node> {
     if added.is_empty() {
         return None;
     }
@@ -51,7 +45,7 @@ pub fn with_less<F: ModelFamily + ?Sized>(
 }
 
 /// Whether a model predicts better in the other reading, whose `fitter` this is.
-pub fn is_better<F: ModelFamily + ?Sized>(model: &Node, fitter: &Fitter<'_, F>) -> bool {
+pub fn is_better(model: &Node, fitter: &Fitter<'_>) -> bool {
     gain(model, &fitter.refit(model.model.clone(), model.setting, STEPS)) > 0.0
 }
 

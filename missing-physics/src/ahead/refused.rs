@@ -12,8 +12,8 @@ const GONE: f64 = 0.001;
 
 /// The effect of a model that is not one as it was fitted, and why, if any: an amplitude ended at the limit of its
 /// search, what makes it that effect is gone (a gap of no width), or it left nothing of what every model has (a mass).
-pub fn refused<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn refused(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     base: &Node,
     node: &Node,
@@ -44,8 +44,8 @@ pub fn refused<F: ModelFamily + ?Sized>(
 
 /// The effect of a model that is not told, and why, if any: it is none as it was fitted, stands for how the recording is
 /// read, or the data do not tell what makes it one.
-pub fn not_told<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn not_told(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     base: &Node,
     node: &Node,
@@ -57,8 +57,8 @@ pub fn not_told<F: ModelFamily + ?Sized>(
 
 /// The effect of a model that may do no more than another way to read the recording would, if any: the data leave how late it
 /// makes the input open down to the low ends of its parameters' intervals.
-pub fn as_read<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn as_read(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     base: &Node,
     node: &Node,
@@ -78,8 +78,8 @@ pub fn as_read<F: ModelFamily + ?Sized>(
 /// The effect of a model of which the data do not tell what makes it that effect, if any: a length, a speed or a time that
 /// may be anything, or lie beyond where it was looked for, is a limit of its law, which then is another one; and what may be
 /// 0 in all of its amplitudes may not be there.
-pub fn unknown<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn unknown(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     base: &Node,
     node: &Node,

@@ -8,7 +8,7 @@ use super::node::Node;
 use super::{Ahead, intervals};
 use crate::diagnosis::where_it_fails::{self, Look};
 use crate::diagnosis::{self, generic, noise};
-use crate::family::{Fitted, ModelFamily, detection_limit, sizes};
+use crate::family::{Fitted, ModelFamily, detection_limit, on_view, sizes};
 use crate::fit::{self, Fit};
 use crate::report::{
     Ambiguity, Budget, Candidate, Decision, DetectionLimit, Discovery, MissingForce, NamedValue,
@@ -23,8 +23,8 @@ use crate::task::Settings;
 const SENSORS_BETTER: f64 = 0.5;
 
 /// What is told of a search.
-pub struct Report<'a, F: ModelFamily + ?Sized> {
-    pub family: &'a F,
+pub struct Report<'a> {
+    pub family: &'a dyn ModelFamily,
     /// All of the recording.
     pub ahead: &'a dyn Ahead,
     pub settings: &'a Settings<'a>,
@@ -35,10 +35,10 @@ pub struct Report<'a, F: ModelFamily + ?Sized> {
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-impl<F: ModelFamily + ?Sized> Report<'_, F> {
+impl Report<'_> {
     /// All that is told.
     pub fn discovery(self) -> Discovery {
-        let family = self.family.on_view();
+        let family = on_view(self.family);
         let points = family.target().len();
         let split = Split::new(points, family.blocks());
         let as_fit = |node: &Node| fit::evaluate(family, node.model.clone(), &vec![1.0; points]);
@@ -125,9 +125,9 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     /// The force that a model lacks, and its shares by regime; where nothing is known of it those of the error.
     fn lacks(&self, node: &Node, fit: &Fit) -> (Option<MissingForce>, Vec<RegimeShare>) {
         let series = node.missing_force(self.ahead);
-        match series.and_then(|series| MissingForce::of(self.family.on_view(), series)) {
+        match series.and_then(|series| MissingForce::of(on_view(self.family), series)) {
             Some((missing, regimes)) => (Some(missing), regimes),
-            None => (None, where_it_fails::regimes(self.family.on_view(), &fit.residual)),
+            None => (None, where_it_fails::regimes(on_view(self.family), &fit.residual)),
         }
     }
 
@@ -135,7 +135,7 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
     fn generic_term(&self, places: &[crate::report::Where], residual: &[f64]) -> Option<String> {
         let place = places.iter().find(|place| place.is_structure())?;
         let named = |c: &&crate::family::Coordinate| c.name == place.coordinate;
-        let family = self.family.on_view();
+        let family = on_view(self.family);
         let coordinate = family.coordinates().iter().find(named)?;
         family.generic_term(coordinate, &generic::shape(coordinate, residual))
     }
@@ -275,8 +275,8 @@ impl<F: ModelFamily + ?Sized> Report<'_, F> {
 }
 
 /// What is told of a model by itself; `fit` is the same model along the measured motion.
-pub fn rung<F: ModelFamily + ?Sized>(
-    (family, ahead): (&F, &dyn Ahead),
+pub fn rung(
+    (family, ahead): (&dyn ModelFamily, &dyn Ahead),
     node: &Node,
     fit: &Fit,
     split: &Split,
@@ -287,9 +287,9 @@ pub fn rung<F: ModelFamily + ?Sized>(
         added: Vec::new(),
         effects: effects.map(|&t| terms[t].name.clone()).collect(),
         parameters: intervals::of((family, ahead), node),
-        error: diagnosis::errors(family.on_view(), fit, split),
+        error: diagnosis::errors(on_view(family), fit, split),
         p_value: None,
-        metrics: Some(SplitMetrics::of(&fit.residual, family.on_view().target(), split)),
+        metrics: Some(SplitMetrics::of(&fit.residual, on_view(family).target(), split)),
         likelihood_gain: None,
         budget: Some(node.scale / ahead.budget()).filter(|times| times.is_finite()),
     }

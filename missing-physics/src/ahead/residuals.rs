@@ -40,8 +40,8 @@ const PLAIN: usize = 2;
 const STARTS: usize = 3;
 
 /// A family that only gives residuals.
-pub struct Residuals<'a, F: ModelFamily + ?Sized> {
-    family: &'a F,
+pub struct Residuals<'a> {
+    family: &'a dyn ModelFamily,
     instants: Vec<(f64, usize)>,
     /// How much each residual counts, the same for every model.
     weights: Vec<f64>,
@@ -54,9 +54,9 @@ pub struct Residuals<'a, F: ModelFamily + ?Sized> {
     whitened: bool,
 }
 
-impl<'a, F: ModelFamily + ?Sized> Residuals<'a, F> {
+impl<'a> Residuals<'a> {
     /// Of a family; the residual of `base` shows the noise.
-    pub fn new(family: &'a F, base: &Fitted) -> Self {
+    pub fn new(family: &'a dyn ModelFamily, base: &Fitted) -> Self {
         let prediction = fit::predict(family, base);
         let residual = fit::residual(family, &prediction);
         let weights = weights(family.doubt(), &residual);
@@ -90,7 +90,11 @@ impl<'a, F: ModelFamily + ?Sized> Residuals<'a, F> {
     }
 
     /// What `look` finds to be uneven in a residual beyond chance, the largest share first.
-    fn uneven(&self, residual: &[f64], look: fn(&F, &Look<'_>) -> Vec<Where>) -> Option<Where> {
+    fn uneven(
+        &self,
+        residual: &[f64],
+        look: fn(&dyn ModelFamily, &Look<'_>) -> Vec<Where>,
+    ) -> Option<Where> {
         let motion = self.family.motion();
         let view = Look { residual, weights: &vec![1.0; residual.len()], motion: &motion, seed: 1 };
         let places = look(self.family, &view);
@@ -104,7 +108,7 @@ impl<'a, F: ModelFamily + ?Sized> Residuals<'a, F> {
     }
 }
 
-impl<F: ModelFamily + ?Sized> Ahead for Residuals<'_, F> {
+impl Ahead for Residuals<'_> {
     fn settings(&self) -> usize {
         if self.whitened { ORDERS.len() } else { PLAIN }
     }

@@ -26,7 +26,7 @@ pub struct Moved {
 }
 
 /// The parameters of a model as they are moved.
-pub fn of<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<Moved> {
+pub fn of(family: &dyn ModelFamily, model: &Fitted) -> Vec<Moved> {
     let parameters = model.parameters(family);
     parameters
         .zip(&model.values)

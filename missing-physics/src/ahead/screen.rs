@@ -45,8 +45,8 @@ pub struct Screened {
 }
 
 /// The best trial of every candidate. What they gain by chance is only looked at where `with_chance` asks for it.
-pub fn screen<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn screen(
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     node: &Node,
     candidates: &[usize],
@@ -88,7 +88,7 @@ struct Screening<'a> {
 }
 
 impl<'a> Screening<'a> {
-    fn new<F: ModelFamily + ?Sized>(family: &F, ahead: &'a dyn Ahead, node: &'a Node) -> Self {
+    fn new(family: &dyn ModelFamily, ahead: &'a dyn Ahead, node: &'a Node) -> Self {
         let shrunk = node.deviation / node.scale;
         let scale = node.weighing(ahead.expected(node.setting)) * shrunk;
         let weight: Vec<f64> =
@@ -109,9 +109,9 @@ impl<'a> Screening<'a> {
     }
 
     /// The few trials that promise most, where that can be said at less than the cost of looking at all.
-    fn likely<F: ModelFamily + ?Sized>(
+    fn likely(
         &self,
-        family: &F,
+        family: &dyn ModelFamily,
         term: usize,
         trials: Vec<Trial>,
         part: Option<&Self>,
@@ -155,9 +155,9 @@ impl<'a> Screening<'a> {
     }
 
     /// Gain of every trial as it is, the multiples of its sizes that reach it, and its columns.
-    fn looked_at<F: ModelFamily + ?Sized>(
+    fn looked_at(
         &self,
-        family: &F,
+        family: &dyn ModelFamily,
         trials: &[Trial],
     ) -> Vec<(f64, Vec<f64>, Vec<Vec<f64>>)> {
         let looks: Vec<Look> = trials.iter().flat_map(looks).collect();
@@ -212,9 +212,9 @@ impl<'a> Screening<'a> {
     }
 
     /// The best of a term's trials, and what all of them change where that is asked for.
-    fn best<F: ModelFamily + ?Sized>(
+    fn best(
         &self,
-        family: &F,
+        family: &dyn ModelFamily,
         term: usize,
         trials: &[Trial],
         with_changes: bool,
@@ -249,9 +249,9 @@ impl<'a> Screening<'a> {
     }
 
     /// Gain and the multiples of the trial's sizes that reach it.
-    fn gain<F: ModelFamily + ?Sized>(
+    fn gain(
         &self,
-        family: &F,
+        family: &dyn ModelFamily,
         trial: &Trial,
         columns: &[Vec<f64>],
     ) -> (f64, Vec<f64>) {
@@ -310,7 +310,7 @@ fn product(x: &[f32], y: &[f32]) -> f64 {
 }
 
 /// Which amplitudes of a trial cannot be negative; a whole change has one.
-fn positive<F: ModelFamily + ?Sized>(family: &F, trial: &Trial) -> Vec<bool> {
+fn positive(family: &dyn ModelFamily, trial: &Trial) -> Vec<bool> {
     if trial.amplitudes.is_empty() {
         return vec![true];
     }

@@ -5,7 +5,6 @@ use super::compare::Comparison;
 use super::fit::{Fitter, best_setting};
 use super::found::{Found, IN_FULL};
 use super::refused::refused;
-use crate::family::ModelFamily;
 use crate::report::{Decision, Remark};
 use crate::task::Thresholds;
 
@@ -13,14 +12,14 @@ use crate::task::Thresholds;
 pub(super) const PAIR: usize = 2;
 
 /// What was found in a reading.
-pub(super) struct Sought<'a, F: ModelFamily + ?Sized> {
-    pub(super) reading: &'a Reading<'a, F>,
+pub(super) struct Sought<'a> {
+    pub(super) reading: &'a Reading<'a>,
     pub(super) found: Found,
     /// Whether it was not asked of all of the recording.
     pub(super) on_part: bool,
 }
 
-impl<F: ModelFamily + ?Sized> Sought<'_, F> {
+impl Sought<'_> {
     /// The same without names that are not the cause.
     pub(super) fn judged(mut self, thresholds: &Thresholds) -> Self {
         let Reading { family, .. } = self.reading;
@@ -100,11 +99,11 @@ mod tests {
 
     /// A result with so many effects.
     fn sought<'a>(
-        reading: &'a Reading<'a, Plant>,
+        reading: &'a Reading<'a>,
         plant: &Plant,
         effects: usize,
         complete: bool,
-    ) -> Sought<'a, Plant> {
+    ) -> Sought<'a> {
         let base = Fitter::new(plant, plant).refit(Plant::model(&[]), 0, IN_FULL);
         let found = Found { added: vec![WAVE; effects], complete, ..Found::of(base) };
         Sought { reading, found, on_part: false }
@@ -115,7 +114,7 @@ mod tests {
         let plant = plant();
         let reading = Reading::of(&plant).unwrap();
         let of = |effects, complete| sought(&reading, &plant, effects, complete);
-        let is_plainer = |effects, complete, other: &Sought<'_, Plant>| {
+        let is_plainer = |effects, complete, other: &Sought<'_>| {
             of(effects, complete).is_plainer_than(other, &Thresholds::default())
         };
         assert!(is_plainer(1, true, &of(2, true)));
@@ -134,7 +133,7 @@ mod tests {
             other.found.rungs = vec![evaluated(&plant, model, 0)];
             other
         };
-        let is_plainer = |first: &Sought<'_, Plant>, wave: &[f64]| {
+        let is_plainer = |first: &Sought<'_>, wave: &[f64]| {
             let mut second = sought(&reading, &plant, wave.len(), true);
             let nodes = wave.iter().map(|size| Plant::model(&[(WAVE, &[*size])]));
             second.found.rungs = nodes.map(|model| evaluated(&plant, model, 0)).collect();

@@ -9,18 +9,18 @@ use crate::statistics::split::Split;
 use crate::statistics::weights;
 
 /// What of a family's data is fitted and what is held out.
-fn split<F: ModelFamily + ?Sized>(family: &F) -> Split {
+fn split(family: &dyn ModelFamily) -> Split {
     Split::new(family.target().len(), family.blocks())
 }
 
 /// 1 on grid points of blocks that are fitted, 0 on those held out.
-pub fn fitted_blocks<F: ModelFamily + ?Sized>(family: &F) -> Vec<f64> {
+pub fn fitted_blocks(family: &dyn ModelFamily) -> Vec<f64> {
     let fitted = split(family).fit(family.target().len());
     fitted.into_iter().map(|fit| f64::from(u8::from(fit))).collect()
 }
 
 /// A fit as a rung: its parameters and errors.
-pub fn rung<F: ModelFamily + ?Sized>(family: &F, fit: &Fit, added: &[String]) -> Rung {
+pub fn rung(family: &dyn ModelFamily, fit: &Fit, added: &[String]) -> Rung {
     let (split, fitted) = (split(family), fitted_blocks(family));
     let effects = fit.model.terms.iter().map(|&term| &family.terms()[term]);
     Rung {
@@ -37,8 +37,8 @@ pub fn rung<F: ModelFamily + ?Sized>(family: &F, fit: &Fit, added: &[String]) ->
 
 /// What a fit looks like on this data, as a discovery that looks for nothing: errors, where it
 /// fails, noise, curves. Once `is_over` the parts that take long are left out.
-pub fn comparison<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn comparison(
+    family: &dyn ModelFamily,
     (base, last): (&Fit, &Fit),
     rungs: Vec<Rung>,
     seed: u64,

@@ -9,11 +9,7 @@ use crate::statistics::split::Split;
 
 /// Every error of a model: of the compared quantity, absolute and relative, and in the family's
 /// other views.
-pub fn errors<F: ModelFamily + ?Sized>(
-    family: &F,
-    fit: &Fit,
-    split: &Split,
-) -> BTreeMap<String, NamedError> {
+pub fn errors(family: &dyn ModelFamily, fit: &Fit, split: &Split) -> BTreeMap<String, NamedError> {
     let quantity = family.quantity();
     let rms = split.rms(&fit.residual);
     let size = split.rms(family.target());
@@ -29,6 +25,6 @@ pub fn errors<F: ModelFamily + ?Sized>(
 }
 
 /// Key of the relative error.
-pub fn relative_key<F: ModelFamily + ?Sized>(family: &F) -> String {
+pub fn relative_key(family: &dyn ModelFamily) -> String {
     crate::report::relative_key(&family.quantity().name)
 }

@@ -18,10 +18,7 @@ const FEWEST: usize = 60;
 
 impl MissingForce {
     /// Sums up a series, with its shares by regime; nothing where nothing is known or numbers are not finite.
-    pub fn of<F: ModelFamily + ?Sized>(
-        family: &F,
-        series: &Series,
-    ) -> Option<(Self, Vec<RegimeShare>)> {
+    pub fn of(family: &dyn ModelFamily, series: &Series) -> Option<(Self, Vec<RegimeShare>)> {
         let known: Vec<usize> = (0..series.time.len()).filter(|k| series.known[*k]).collect();
         let (size, band) = series.size()?;
         let recorded = Some(series.rms(&series.recorded)).filter(|rms| rms.is_finite())?;
@@ -59,7 +56,7 @@ fn on_grid(grid: &[f64], series: &Series) -> Vec<Option<f64>> {
     grid.iter().map(at).collect()
 }
 
-fn regimes<F: ModelFamily + ?Sized>(family: &F, grid: &[Option<f64>]) -> Vec<RegimeShare> {
+fn regimes(family: &dyn ModelFamily, grid: &[Option<f64>]) -> Vec<RegimeShare> {
     let known: Vec<bool> = grid.iter().map(Option::is_some).collect();
     let force: Vec<f64> = grid.iter().map(|force| force.unwrap_or(0.0)).collect();
     let mut shares = where_it_fails::regimes_where(family, &force, &known);
@@ -68,7 +65,7 @@ fn regimes<F: ModelFamily + ?Sized>(family: &F, grid: &[Option<f64>]) -> Vec<Reg
     shares
 }
 
-fn maps<F: ModelFamily + ?Sized>(family: &F, grid: &[Option<f64>]) -> Vec<ResidualMap> {
+fn maps(family: &dyn ModelFamily, grid: &[Option<f64>]) -> Vec<ResidualMap> {
     let of_state = family.coordinates().iter().filter(|coordinate| coordinate.state);
     of_state.filter_map(|coordinate| along(coordinate, grid, family.time())).collect()
 }

@@ -18,7 +18,7 @@ const MOST_POINTS: usize = 4000;
 const APART: f64 = 0.01;
 
 /// [`floor`] over the coordinates that make up a family's state.
-pub fn floor_of<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> f64 {
+pub fn floor_of(family: &dyn ModelFamily, residual: &[f64]) -> f64 {
     let state: Vec<Coordinate> =
         family.coordinates().iter().filter(|coordinate| coordinate.state).cloned().collect();
     floor(residual, &state)

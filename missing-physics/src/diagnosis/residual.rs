@@ -10,11 +10,7 @@ use crate::report::{Diagnosis, Discovery, Independence, Plot};
 use crate::statistics::residual_tests;
 
 /// Looks at the residual of `fit`; the spectra come beside, as plots.
-pub fn diagnose<F: ModelFamily + ?Sized>(
-    family: &F,
-    fit: &Fit,
-    seed: u64,
-) -> (Diagnosis, Vec<Plot>) {
+pub fn diagnose(family: &dyn ModelFamily, fit: &Fit, seed: u64) -> (Diagnosis, Vec<Plot>) {
     let (time, residual) = (family.time(), fit.residual.as_slice());
     let (motion, quantity) = (family.motion(), family.quantity());
     // A model that never was a plant may predict anything.
@@ -41,8 +37,8 @@ pub fn diagnose<F: ModelFamily + ?Sized>(
 }
 
 /// Adds the diagnoses of base and last model, and the spectra of the last one, to a report.
-pub fn attach<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn attach(
+    family: &dyn ModelFamily,
     base: &Fit,
     last: &Fit,
     seed: u64,

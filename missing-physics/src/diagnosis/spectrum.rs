@@ -34,11 +34,7 @@ const AT_SPEED: f64 = 0.03;
 const CURVE: usize = 2000;
 
 /// The residual of `model` at full rate, or on the family's grid where the family has no more.
-pub fn full_rate<F: ModelFamily + ?Sized>(
-    family: &F,
-    model: &Fitted,
-    residual: &[f64],
-) -> FullRate {
+pub fn full_rate(family: &dyn ModelFamily, model: &Fitted, residual: &[f64]) -> FullRate {
     family.full_rate(model).unwrap_or_else(|| FullRate {
         interval: interval(family.time()),
         residual: residual.to_vec(),

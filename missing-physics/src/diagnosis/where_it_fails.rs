@@ -27,7 +27,7 @@ pub struct Look<'a> {
 /// For every coordinate: the share of the squared error that a function of this coordinate alone
 /// would remove (a step for each of 20 bins of equally many points or of 100 of equal width, whichever is
 /// more after adjustment for their number), the chance of as much by accident, and where along the coordinate it is worst. Largest share first.
-pub fn coordinates<F: ModelFamily + ?Sized>(family: &F, view: &Look<'_>) -> Vec<Where> {
+pub fn coordinates(family: &dyn ModelFamily, view: &Look<'_>) -> Vec<Where> {
     let points = view.residual.len();
     let shifts = placebo::rearrangements(points, PLACEBOS, view.motion, view.seed);
     let shuffles = placebo::shuffles(points, PLACEBOS, view.seed);
@@ -100,7 +100,7 @@ fn tested(
 }
 
 /// Only the coordinates that are, or behave like, time; the instants themselves where there is none and they only grow.
-pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &Look<'_>) -> Vec<Where> {
+pub fn times(family: &dyn ModelFamily, view: &Look<'_>) -> Vec<Where> {
     let shuffles = placebo::shuffles(view.residual.len(), PLACEBOS, view.seed);
     let unit = family.quantity().unit;
     let instants =
@@ -114,13 +114,13 @@ pub fn times<F: ModelFamily + ?Sized>(family: &F, view: &Look<'_>) -> Vec<Where>
 }
 
 /// Share of the squared error and of the time in every regime; both sum to one.
-pub fn regimes<F: ModelFamily + ?Sized>(family: &F, residual: &[f64]) -> Vec<RegimeShare> {
+pub fn regimes(family: &dyn ModelFamily, residual: &[f64]) -> Vec<RegimeShare> {
     regimes_where(family, residual, &vec![true; residual.len()])
 }
 
 /// The same of the points that are known alone.
-pub fn regimes_where<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn regimes_where(
+    family: &dyn ModelFamily,
     residual: &[f64],
     known: &[bool],
 ) -> Vec<RegimeShare> {

@@ -26,6 +26,7 @@ pub use fn_family::{FnFamily, Given};
 pub use full_rate::FullRate;
 pub use generic::Generic;
 pub use model_family::ModelFamily;
+pub(crate) use model_family::on_view;
 pub use other_reading::OtherReading;
 pub use own::Own;
 pub use series::Series;

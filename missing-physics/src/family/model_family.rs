@@ -121,12 +121,12 @@ pub trait ModelFamily: Sync {
     }
 
     /// The same recording read in the other way (an input held between samples or sampled); nothing where it was stated.
-    fn other_reading(&self) -> Option<OtherReading<'_, Self>> {
+    fn other_reading(&self) -> Option<OtherReading<'_>> {
         None
     }
 
     /// The same recording with noise of its input smoothed away, without a delay; more of it the larger the number, from 0.
-    fn without_noise(&self, _more: usize) -> Option<&Self> {
+    fn without_noise(&self, _more: usize) -> Option<&dyn ModelFamily> {
         None
     }
 
@@ -142,7 +142,7 @@ pub trait ModelFamily: Sync {
 
     /// The same family on a part of a long recording, near whose base model that of all of it is looked for; nothing where
     /// the whole is short enough.
-    fn in_part(&self) -> Option<&Self> {
+    fn in_part(&self) -> Option<&dyn ModelFamily> {
         None
     }
 
@@ -211,8 +211,8 @@ pub trait ModelFamily: Sync {
     }
 
     /// The same as people are shown it, where that is compared otherwise than what is searched. It has the same terms.
-    fn on_view(&self) -> &Self {
-        self
+    fn shown(&self) -> Option<&dyn ModelFamily> {
+        None
     }
 
     /// What the residual may depend on.
@@ -280,4 +280,9 @@ pub trait ModelFamily: Sync {
     fn plots(&self, _base: &Fitted, _last: &Fitted) -> Vec<Plot> {
         Vec::new()
     }
+}
+
+/// What people are shown of `family`.
+pub(crate) fn on_view(family: &dyn ModelFamily) -> &dyn ModelFamily {
+    family.shown().unwrap_or(family)
 }

@@ -9,7 +9,7 @@ use super::term::{Term, TermParameter};
 impl Fitted {
     /// This model without one of its terms.
     #[must_use]
-    pub fn without<F: ModelFamily + ?Sized>(&self, family: &F, term: usize) -> Self {
+    pub fn without(&self, family: &dyn ModelFamily, term: usize) -> Self {
         let mut less = Self::default();
         for (position, &index) in self.terms.iter().enumerate() {
             if index != term {
@@ -21,16 +21,16 @@ impl Fitted {
     }
 
     /// Where in `values` the parameters of the term at `position` stand.
-    pub fn range<F: ModelFamily + ?Sized>(&self, family: &F, position: usize) -> Range<usize> {
+    pub fn range(&self, family: &dyn ModelFamily, position: usize) -> Range<usize> {
         let count = |index: &usize| family.terms()[*index].parameters.len();
         let start = self.terms[..position].iter().map(count).sum();
         start..start + count(&self.terms[position])
     }
 
     /// All parameters with the term they belong to, in the order of `values`.
-    pub fn parameters<'a, F: ModelFamily + ?Sized>(
+    pub fn parameters<'a>(
         &'a self,
-        family: &'a F,
+        family: &'a dyn ModelFamily,
     ) -> impl Iterator<Item = (&'a Term, &'a TermParameter)> {
         self.terms.iter().flat_map(|&index| {
             let term = &family.terms()[index];
@@ -40,7 +40,7 @@ impl Fitted {
 
     /// This model with every value within the limits of the family.
     #[must_use]
-    pub fn within<F: ModelFamily + ?Sized>(mut self, family: &F) -> Self {
+    pub fn within(mut self, family: &dyn ModelFamily) -> Self {
         let limits: Vec<(f64, f64)> =
             self.parameters(family).map(|(_, p)| (p.lower, p.upper)).collect();
         for (value, (lower, upper)) in self.values.iter_mut().zip(limits) {

@@ -7,8 +7,8 @@ use super::shapes;
 use super::term::Role;
 
 /// The trials that shapes of a term make with its amplitudes.
-pub fn trials<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn trials(
+    family: &dyn ModelFamily,
     model: &Fitted,
     term: usize,
     shapes: &[Vec<f64>],

@@ -37,7 +37,7 @@ pub struct Fit {
 }
 
 /// Target minus prediction.
-pub fn residual<F: ModelFamily + ?Sized>(family: &F, prediction: &[f64]) -> Vec<f64> {
+pub fn residual(family: &dyn ModelFamily, prediction: &[f64]) -> Vec<f64> {
     family.target().iter().zip(prediction).map(|(target, value)| target - value).collect()
 }
 
@@ -47,14 +47,14 @@ pub fn weighted_square(values: &[f64], weights: &[f64]) -> f64 {
 }
 
 /// The prediction of `model` on the whole grid.
-pub fn predict<F: ModelFamily + ?Sized>(family: &F, model: &Fitted) -> Vec<f64> {
+pub fn predict(family: &dyn ModelFamily, model: &Fitted) -> Vec<f64> {
     let mut prediction = vec![0.0; family.target().len()];
     family.predict(model, &mut prediction);
     prediction
 }
 
 /// Refines `start` on the grid points with a weight; `weights` multiplies the residual.
-pub fn refine<F: ModelFamily + ?Sized>(family: &F, start: Fitted, weights: &[f64]) -> Fit {
+pub fn refine(family: &dyn ModelFamily, start: Fitted, weights: &[f64]) -> Fit {
     let anchor = start.values.clone();
     let mut fit = evaluate(family, start, weights);
     let mut damping = 1e-8;
@@ -70,7 +70,7 @@ pub fn refine<F: ModelFamily + ?Sized>(family: &F, start: Fitted, weights: &[f64
 }
 
 /// Prediction, residual, Jacobian and cost of `model` as it is.
-pub fn evaluate<F: ModelFamily + ?Sized>(family: &F, model: Fitted, weights: &[f64]) -> Fit {
+pub fn evaluate(family: &dyn ModelFamily, model: Fitted, weights: &[f64]) -> Fit {
     let prediction = predict(family, &model);
     let residual = residual(family, &prediction);
     let cost = weighted_square(&residual, weights);
@@ -79,14 +79,14 @@ pub fn evaluate<F: ModelFamily + ?Sized>(family: &F, model: Fitted, weights: &[f
 }
 
 /// A model at given values, evaluated on the whole grid.
-pub fn as_given<F: ModelFamily + ?Sized>(family: &F, model: Fitted) -> Fit {
+pub fn as_given(family: &dyn ModelFamily, model: Fitted) -> Fit {
     let weights = vec![1.0; family.target().len()];
     evaluate(family, model, &weights)
 }
 
 /// One accepted step, or nothing where no damping makes the cost fall.
-fn step<F: ModelFamily + ?Sized>(
-    family: &F,
+fn step(
+    family: &dyn ModelFamily,
     fit: &Fit,
     weights: &[f64],
     anchor: &[f64],
@@ -151,11 +151,7 @@ fn moved(parameter: &TermParameter, value: f64, step: f64) -> f64 {
     new.clamp(parameter.lower, parameter.upper)
 }
 
-fn jacobian<F: ModelFamily + ?Sized>(
-    family: &F,
-    model: &Fitted,
-    prediction: &[f64],
-) -> Vec<Vec<f64>> {
+fn jacobian(family: &dyn ModelFamily, model: &Fitted, prediction: &[f64]) -> Vec<Vec<f64>> {
     let parameters: Vec<&TermParameter> = model.parameters(family).map(|(_, p)| p).collect();
     (0..parameters.len())
         .into_par_iter()

@@ -33,18 +33,13 @@ pub struct Found {
 }
 
 /// Identifies a model of these terms on the points with a weight, by AEP and refinement.
-pub fn identify<F: ModelFamily + ?Sized>(
-    family: &F,
-    terms: &[usize],
-    weights: &[f64],
-    seed: u64,
-) -> Found {
+pub fn identify(family: &dyn ModelFamily, terms: &[usize], weights: &[f64], seed: u64) -> Found {
     identify_by(family, terms, weights, (&Aep::practical(), seed), Until::default())
 }
 
 /// Like [`identify`], with another optimizer; once `until` is over the best of the search so far is refined.
-pub fn identify_by<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn identify_by(
+    family: &dyn ModelFamily,
     terms: &[usize],
     weights: &[f64],
     (method, seed): (&dyn Method<f64>, u64),
@@ -81,8 +76,8 @@ pub fn identify_by<F: ModelFamily + ?Sized>(
 
 /// The model of `fit` with a term added: the trial shape that removes most of what the fit leaves, searched on between
 /// its neighbours.
-pub fn shaped<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn shaped(
+    family: &dyn ModelFamily,
     fit: &Fit,
     term: usize,
     weights: &[f64],
@@ -210,8 +205,8 @@ fn natural(fit: &Fit, parameters: &[TermParameter]) -> Vec<Vec<f64>> {
 }
 
 /// The squared error as a function of all amplitudes, exact where the prediction is linear in them.
-fn quadratic<'a, F: ModelFamily + ?Sized>(
-    family: &F,
+fn quadratic<'a>(
+    family: &dyn ModelFamily,
     start: &'a Fitted,
     parameters: &[TermParameter],
     weights: &[f64],
@@ -231,8 +226,8 @@ fn quadratic<'a, F: ModelFamily + ?Sized>(
 }
 
 /// The model with the shapes of `start` and the best amplitudes, and its cost.
-fn projected<F: ModelFamily + ?Sized>(
-    family: &F,
+fn projected(
+    family: &dyn ModelFamily,
     start: &Fitted,
     parameters: &[TermParameter],
     weights: &[f64],

@@ -24,8 +24,8 @@ const UNSEEN: f64 = 1e-9;
 const WIDEST_FACTOR: f64 = 3.0;
 
 /// Every parameter of the fit with its 95 % interval; `weights` are those of the fit.
-pub fn estimates<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn estimates(
+    family: &dyn ModelFamily,
     fit: &Fit,
     weights: &[f64],
 ) -> BTreeMap<String, Estimate> {

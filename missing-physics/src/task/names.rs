@@ -31,10 +31,7 @@ pub enum DiscoverError {
 ///
 /// # Errors
 /// [`DiscoverError::UnknownTerm`] for a name that the family does not have.
-pub fn terms<F: ModelFamily + ?Sized>(
-    family: &F,
-    names: &[String],
-) -> Result<Vec<usize>, DiscoverError> {
+pub fn terms(family: &dyn ModelFamily, names: &[String]) -> Result<Vec<usize>, DiscoverError> {
     let all = family.terms();
     let mut indices: Vec<usize> = (0..all.len()).filter(|&k| all[k].always).collect();
     for name in names {
@@ -54,8 +51,8 @@ pub fn terms<F: ModelFamily + ?Sized>(
 ///
 /// # Errors
 /// [`DiscoverError::UnknownTerm`] for a name that the family does not have, [`DiscoverError::TwoForms`] for two forms of an effect.
-pub fn terms_of_model<F: ModelFamily + ?Sized>(
-    family: &F,
+pub fn terms_of_model(
+    family: &dyn ModelFamily,
     names: &[String],
 ) -> Result<Vec<usize>, DiscoverError> {
     let terms = terms(family, names)?;
@@ -73,7 +70,7 @@ pub fn terms_of_model<F: ModelFamily + ?Sized>(
 ///
 /// # Errors
 /// [`DiscoverError::UnknownTerm`] for an effect that the family does not have.
-pub fn model_of<F: ModelFamily + ?Sized>(family: &F, rung: &Rung) -> Result<Fitted, DiscoverError> {
+pub fn model_of(family: &dyn ModelFamily, rung: &Rung) -> Result<Fitted, DiscoverError> {
     let indices = terms(family, &rung.effects)?;
     let values = indices.iter().flat_map(|&index| {
         let term = &family.terms()[index];

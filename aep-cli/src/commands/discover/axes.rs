@@ -11,7 +11,7 @@ use aep_studio::words::{self, AXES_HEADINGS, AxisResult, axis_row};
 use friction_ident::family::{Decides, explained};
 use missing_physics::measurement::check::{DataCheck, Severity, check};
 use missing_physics::report::{Combinations, Samples};
-use missing_physics::{Discovery, ModelFamily, Thresholds, discover};
+use missing_physics::{Discovery, Thresholds, discover};
 use serde_json::{Value, json};
 
 use super::{Args, confirmed, friction, save_model, save_series};

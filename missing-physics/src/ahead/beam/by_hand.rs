@@ -8,25 +8,29 @@ use crate::ahead::found::IN_FULL;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
 use crate::ahead::{Ahead, report};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::{Fitted, ModelFamily, on_view};
 use crate::report::Rung;
 use crate::statistics::split::Split;
 use crate::task::{Event, Thresholds};
 
 /// The models of one recording. As in a search, parameters of a long recording are looked for on a part of it and refitted
 /// on all.
-pub struct ByHand<'a, F: ModelFamily + ?Sized> {
-    family: &'a F,
+pub struct ByHand<'a> {
+    family: &'a dyn ModelFamily,
     whole: Box<dyn Ahead + 'a>,
     part: Option<Box<dyn Ahead + 'a>>,
     stop: &'a (dyn Fn() -> bool + Sync),
     tell: Tell<'a>,
 }
 
-impl<'a, F: ModelFamily + ?Sized> ByHand<'a, F> {
+impl<'a> ByHand<'a> {
     /// Models of `family`; nothing where it does not predict one sample ahead. Fits end early where `stop` says so, and
     /// `tell` hears of every step ([`Event::Fitted`]).
-    pub fn new(family: &'a F, stop: &'a (dyn Fn() -> bool + Sync), tell: Tell<'a>) -> Option<Self> {
+    pub fn new(
+        family: &'a dyn ModelFamily,
+        stop: &'a (dyn Fn() -> bool + Sync),
+        tell: Tell<'a>,
+    ) -> Option<Self> {
         let (whole, part) = (family.ahead()?, family.ahead_in_part());
         Some(Self { family, whole, part, stop, tell })
     }
@@ -77,7 +81,7 @@ impl<'a, F: ModelFamily + ?Sized> ByHand<'a, F> {
 
     /// What is told of a model that has `added` beyond the one `below`.
     pub fn rung(&self, below: Option<&Node>, node: &Node, added: &[String]) -> Rung {
-        let shown = self.family.on_view();
+        let shown = on_view(self.family);
         let points = shown.target().len();
         let split = Split::new(points, shown.blocks());
         let fit = crate::fit::evaluate(shown, node.model.clone(), &vec![1.0; points]);
@@ -96,7 +100,7 @@ impl<'a, F: ModelFamily + ?Sized> ByHand<'a, F> {
         self.part.as_deref().unwrap_or(&*self.whole)
     }
 
-    fn search(&self, candidates: Vec<usize>) -> Search<'_, F> {
+    fn search(&self, candidates: Vec<usize>) -> Search<'_> {
         let (ahead, thresholds) = (self.searched(), Thresholds::default());
         Search::new(self.family, ahead, thresholds, candidates, self.stop, self.tell)
     }

@@ -10,10 +10,9 @@ use crate::ahead::found::Found;
 use crate::ahead::node::Node;
 use crate::ahead::refused::not_told;
 use crate::ahead::screen::Screened;
-use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Remains};
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// The best set, of the smallest size that is needed, from one of `known` effects on: each effect more must be worth what an
     /// effect must gain. Two that hide each other gain much together and little alone.
     pub(super) fn size(&mut self, climb: &Climb, mut best: Node, mut known: usize) -> Node {

@@ -11,7 +11,7 @@ use crate::ahead::found::{Ranked, Row};
 use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
 use crate::ahead::screen::{Promise, Screened, screen};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::Fitted;
 use crate::report::{Outcome, Reason, Refusal, Remark};
 use crate::task::Event;
 
@@ -32,7 +32,7 @@ pub(super) const CATCHES_UP: f64 = 0.05;
 /// Effects that are looked at again beside sets that are not the best: those that promised most beside one that was.
 const AGAIN: usize = 8;
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// Sets with one effect more.
     pub(super) fn grow(&mut self, climb: &mut Climb) {
         let size = climb.nodes.len();

@@ -7,12 +7,12 @@ use super::{STEPS, Search, TRIED};
 use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
-use crate::family::{Fitted, ModelFamily, Role};
+use crate::family::{Fitted, Role};
 
 /// Most shapes of the one effect that is searched with all amplitudes at once.
 const SHAPES: usize = 2;
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// Terms that are searched at once, and those that join them one by one.
     pub fn parted(&self, terms: &[usize]) -> (Vec<usize>, Vec<usize>) {
         let shapes = |term: &usize| {
@@ -91,7 +91,7 @@ mod tests {
     use crate::ahead::Thresholds;
     use crate::ahead::testing::{BEAT, Plant, TONE, WAVE};
 
-    fn search<'a>(plant: &'a Plant, stop: &'a (dyn Fn() -> bool + Sync)) -> Search<'a, Plant> {
+    fn search<'a>(plant: &'a Plant, stop: &'a (dyn Fn() -> bool + Sync)) -> Search<'a> {
         Search::new(plant, plant, Thresholds::default(), vec![WAVE, BEAT, TONE], stop, &|_| {})
     }
 

@@ -5,9 +5,8 @@
 
 use super::{Climb, Search};
 use crate::ahead::node::Node;
-use crate::family::ModelFamily;
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// Whether a search goes on from such a set: where it predicts better than all others of its size.
     pub(super) fn follows(&self, climb: &mut Climb, led: &Node) -> bool {
         let size = Self::added(&climb.base, led).len();

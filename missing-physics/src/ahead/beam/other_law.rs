@@ -6,7 +6,7 @@
 
 use super::{Climb, Search};
 use crate::ahead::node::Node;
-use crate::family::{ModelFamily, Role};
+use crate::family::Role;
 use crate::report::{Outcome, Reason, Remark};
 
 /// Share of its amplitude in the base model that may be left of an effect beside another law of it.
@@ -14,7 +14,7 @@ const LEFT: f64 = 0.2;
 /// The same beside what else was found, where the law alone leaves so little: most of it is the law's.
 const MOST: f64 = 0.5;
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// The base model with an effect of the last one that leaves nothing of what it is another law of, beside the others or
     /// alone, if any does.
     pub(super) fn with_other_law(&mut self, climb: &Climb, last: &Node) -> Option<Node> {

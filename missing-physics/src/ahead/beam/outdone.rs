@@ -12,10 +12,9 @@ use super::{Climb, Search};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::leaves_most;
 use crate::ahead::node::Node;
-use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason, Refusal, Remains};
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// The model without the effects that a refused one outdoes, and what is to be said of it.
     pub(super) fn outdone(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
         let base = &climb.base;

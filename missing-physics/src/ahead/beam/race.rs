@@ -7,12 +7,11 @@ use rayon::prelude::*;
 use super::Search;
 use crate::ahead::node::Node;
 use crate::ahead::screen::Promise;
-use crate::family::ModelFamily;
 
 /// Effects that begin for each place.
 const BEGIN: usize = 2;
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// What is fitted beside the `first` ones, so that it is `most` effects: of more that promise enough those that are
     /// lowest after a few steps go on from there. A promise may err by more than what lies between two of them
     /// (successive halving: K. Jamieson and A. Talwalkar, 2016).

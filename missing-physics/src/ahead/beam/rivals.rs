@@ -10,7 +10,7 @@ use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
-use crate::family::{Fitted, ModelFamily, Rival};
+use crate::family::{Fitted, Rival};
 use crate::report::{Outcome, Reason, Remains};
 
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
@@ -30,7 +30,7 @@ struct Does {
     found: Option<Remains>,
 }
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// The model without effects that something else makes up for, and what that is (nothing where these are other effects);
     /// with all of them where a rival does something beside them. Nothing is worse than a name that is not there: what is told beside all effects comes last.
     pub(super) fn instead(

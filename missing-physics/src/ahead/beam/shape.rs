@@ -8,10 +8,10 @@ use crate::ahead::compare::Difference;
 use crate::ahead::fit::{self, Fitter};
 use crate::ahead::node::Node;
 use crate::ahead::screen::{Promise, screen};
-use crate::family::{Fitted, ModelFamily};
+use crate::family::Fitted;
 use crate::report::{Outcome, Reason};
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// A candidate fitted from the best of its starts; nothing where time ran out.
     pub(super) fn begun(&self, promise: &Promise, setting: usize) -> Option<Node> {
         if (self.stop)() {

@@ -13,10 +13,9 @@ use crate::ahead::astray::elsewhere;
 use crate::ahead::node::Node;
 use crate::ahead::refused::refused;
 use crate::ahead::screen::{Promise, screen};
-use crate::family::ModelFamily;
 use crate::report::{Outcome, Reason};
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// The set with simpler effects in the place of others, where those do as much; nothing where none does. `costs` has the
     /// models without each.
     pub(super) fn simplified(&mut self, climb: &Climb, set: &Node, costs: &Costs) -> Option<Node> {

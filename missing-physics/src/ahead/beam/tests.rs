@@ -28,7 +28,7 @@ fn found(plant: &Plant, thresholds: Thresholds, most: usize) -> Found {
 }
 
 /// A search that begins with nothing compared.
-fn search(plant: &Plant, thresholds: Thresholds) -> Search<'_, Plant> {
+fn search(plant: &Plant, thresholds: Thresholds) -> Search<'_> {
     Search::new(plant, plant, thresholds, ALL.to_vec(), &never, &|_| ())
 }
 

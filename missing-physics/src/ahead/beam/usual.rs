@@ -12,10 +12,10 @@ use super::{Climb, STEPS, Search, negative};
 use crate::ahead::fit;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
-use crate::family::{Fitted, ModelFamily};
+use crate::family::Fitted;
 use crate::report::{Outcome, Reason};
 
-impl<F: ModelFamily + ?Sized> Search<'_, F> {
+impl Search<'_> {
     /// The model with the usual effects that the base lacks in the place of each other one, where those do as much.
     pub(super) fn usual_instead(&mut self, climb: &Climb, mut best: Node) -> Node {
         for term in Self::added(&climb.base, &best) {

@@ -18,9 +18,9 @@ pub const IN_FULL: usize = 8;
 impl Found {
     /// Brings what was found on a part to all of the recording: every rung is refitted there, and what gains too little
     /// or no more than chance, or lowers no error beside others, goes. Nothing where it is told to stop before that is done.
-    pub fn confirmed<F: ModelFamily + ?Sized>(
+    pub fn confirmed(
         mut self,
-        family: &F,
+        family: &dyn ModelFamily,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
         stop: &(dyn Fn() -> bool + Sync),

@@ -21,12 +21,7 @@ const LEFT: f64 = 0.88;
 
 impl Found {
     /// Where the last model fails, and whether it does at all.
-    pub fn place<F: ModelFamily + ?Sized>(
-        &mut self,
-        family: &F,
-        ahead: &dyn Ahead,
-        thresholds: &Thresholds,
-    ) {
+    pub fn place(&mut self, family: &dyn ModelFamily, ahead: &dyn Ahead, thresholds: &Thresholds) {
         let top = self.rungs.last().unwrap_or(&self.base);
         self.places = left_by(top, family, ahead, thresholds);
         self.places.splice(0..0, self.rival.clone());
@@ -36,12 +31,7 @@ impl Found {
     /// Takes all names back where they are not the cause: the error does not fall with them, what is left is in a few wild
     /// samples, samples are known to be faulty, the greater part of the force that the base model lacks is still lacking
     /// beyond doubt, or what is no effect does more.
-    pub fn judge<F: ModelFamily + ?Sized>(
-        &mut self,
-        family: &F,
-        ahead: &dyn Ahead,
-        thresholds: &Thresholds,
-    ) {
+    pub fn judge(&mut self, family: &dyn ModelFamily, ahead: &dyn Ahead, thresholds: &Thresholds) {
         let Some(top) = self.rungs.last() else { return };
         let nats = Comparison::new(family, ahead).unfitted(&self.base, top).nats;
         if is_foretold(ahead, &self.base, top, nats, thresholds.better) {
@@ -81,9 +71,9 @@ impl Found {
     /// Takes all names back where the last model hardly errs more than the sensors, and some of the force that the base lacks
     /// is still lacking beyond doubt: where errors tell so little, what is there explains that force, and what only imitates
     /// it does so in part. What every system has is asked nothing.
-    pub fn judge_force<F: ModelFamily + ?Sized>(
+    pub fn judge_force(
         &mut self,
-        family: &F,
+        family: &dyn ModelFamily,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
@@ -110,9 +100,9 @@ impl Found {
 
     /// The force that is lacking before and after, and its 95 % band, where the last model leaves more than so many bands and
     /// more than a share of the square.
-    fn still_lacking<F: ModelFamily + ?Sized>(
+    fn still_lacking(
         &self,
-        family: &F,
+        family: &dyn ModelFamily,
         ahead: &dyn Ahead,
         (bands, share): (f64, f64),
     ) -> Option<(Lacking, f64)> {
@@ -123,7 +113,7 @@ impl Found {
 
     /// A search that was cut names nothing, and says of nothing that it is not in the library: more effects, fewer ones,
     /// another reading or what stands for no effect might have taken that back. Names are told as what stood so far.
-    pub fn so_far<F: ModelFamily + ?Sized>(&mut self, family: &F, ahead: &dyn Ahead) {
+    pub fn so_far(&mut self, family: &dyn ModelFamily, ahead: &dyn Ahead) {
         if !self.stopped {
             return;
         }
@@ -143,9 +133,9 @@ impl Found {
     }
 
     /// Takes all names back that gain what the errors themselves foretell: that says nothing of the base.
-    fn taken_back_as_foretold<F: ModelFamily + ?Sized>(
+    fn taken_back_as_foretold(
         &mut self,
-        family: &F,
+        family: &dyn ModelFamily,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
     ) {
@@ -153,9 +143,9 @@ impl Found {
         self.place(family, ahead, thresholds);
     }
 
-    fn taken_back<F: ModelFamily + ?Sized>(
+    fn taken_back(
         &mut self,
-        family: &F,
+        family: &dyn ModelFamily,
         ahead: &dyn Ahead,
         thresholds: &Thresholds,
         (lacking, because): (Option<Lacking>, Option<NoCause>),
@@ -189,9 +179,9 @@ pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
 }
 
 /// What a model leaves, whether its errors show it or not.
-fn left_by<F: ModelFamily + ?Sized>(
+fn left_by(
     node: &Node,
-    family: &F,
+    family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     thresholds: &Thresholds,
 ) -> Vec<Remains> {

@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn sized(search: &mut Search<'_, Plant>, climb: &Climb) -> Node {
+fn sized(search: &mut Search<'_>, climb: &Climb) -> Node {
     search.size(climb, climb.base.clone(), 0)
 }
 
