@@ -35,6 +35,12 @@ pub fn remark(remark: &Remark) -> String {
             "The model errs {times:.2} times what the sensors make: their noise was taken as too large, and something \
              small may hide in it. Names rest on likelihoods, not on this."
         ),
+        Remark::InputNoise { input, deviation, unit } => format!(
+            "What is left is more than the sensors make and white, as large as a noise of the {input} of {} from sample to sample \
+             makes it that the recording does not hold (of an amplifier, or of counts of a command). What lasts longer than a \
+             sample is not in it.",
+            quantity(*deviation, unit)
+        ),
         Remark::ToldInBrief => {
             "Time ran out when the search was done: maps and tests of the residual were left out."
                 .to_owned()
@@ -153,6 +159,13 @@ mod tests {
     fn even_samples_are_told_with_how_far_their_stamps_were_off() {
         let told = remark(&Remark::EvenSamples { jitter: 0.0086 });
         assert!(told.starts_with("The time stamps jitter by 0.86 % of a sample, and"), "{told}");
+    }
+
+    #[test]
+    fn noise_of_the_input_is_told_with_its_size() {
+        let (input, unit) = ("force".into(), "N".into());
+        let told = remark(&Remark::InputNoise { input, deviation: 0.55, unit });
+        assert!(told.contains("as large as a noise of the force of 550 mN from sample"), "{told}");
     }
 
     #[test]

@@ -197,6 +197,10 @@ impl Ahead for View<'_> {
         self.ahead.predictor.budget()
     }
 
+    fn input_noise(&self, setting: usize) -> Option<f64> {
+        Some(self.ahead.predictor.process(setting))
+    }
+
     fn coloured(&self) -> Option<Box<dyn Ahead + '_>> {
         Some(Box::new(Self { coloured: true, ..*self }))
     }

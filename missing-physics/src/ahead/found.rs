@@ -45,6 +45,8 @@ pub struct Found {
     pub rival: Option<Remains>,
     /// Whether the last model leaves no more than the sensors make.
     pub complete: bool,
+    /// Noise of the input that makes what the last model leaves where sensors alone do not: its standard deviation from sample to sample.
+    pub input_noise: Option<f64>,
     /// Where what is left lies, the largest first.
     pub places: Vec<Remains>,
     /// What a user should know besides.
@@ -75,6 +77,7 @@ impl Found {
             last_screening: Vec::new(),
             rival: None,
             complete: false,
+            input_noise: None,
             places: Vec::new(),
             remarks: Vec::new(),
             decisions: Vec::new(),

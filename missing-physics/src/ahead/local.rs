@@ -14,10 +14,14 @@ const ALONE: f64 = 8.0;
 /// Share of the squared error in so few samples from which they are told as faults of the sampling.
 const FAULTS: (f64, f64) = (0.5, 0.01);
 
-/// Places where a model errs more than `factor` times what the sensors make, the worst first; before them the
+/// Places where a model errs more than `factor` times as much as the `noise` makes it, the worst first; before them the
 /// force that it lacks (in `unit`), where that is as much larger than its band.
-pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<Remains> {
-    let budget = ahead.budget();
+pub fn places(
+    ahead: &dyn Ahead,
+    node: &Node,
+    (factor, noise): (f64, f64),
+    unit: &str,
+) -> Vec<Remains> {
     let time = ahead.instants().iter().map(|(time, _)| *time).collect();
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
@@ -30,7 +34,7 @@ pub fn places(ahead: &dyn Ahead, node: &Node, factor: f64, unit: &str) -> Vec<Re
     let faults = ahead.faults().into_iter().chain(isolated);
     worst.extend(faults.map(|fault| (f64::INFINITY, Remains::Faulty { fault })));
     for (name, unit, values) in &along {
-        let found = largest(values, &node.errors).map(|(rms, at)| (rms / budget, at));
+        let found = largest(values, &node.errors).map(|(rms, at)| (rms / noise, at));
         if let Some((ratio, at)) = found.filter(|(ratio, _)| *ratio > factor) {
             let (coordinate, unit) = (name.clone(), unit.clone());
             worst.push((ratio, Remains::ErrorNear { coordinate, at, unit, times: ratio }));
@@ -91,7 +95,7 @@ mod tests {
     fn a_force_that_is_twice_its_band_is_told_and_a_smaller_one_is_not() {
         let mut plant = Plant::new(1, &[]);
         let node = fit::evaluated(&plant, Plant::model(&[]), 0);
-        assert_eq!(places(&plant, &node, 2.0, "V"), []);
+        assert_eq!(places(&plant, &node, (2.0, plant.budget()), "V"), []);
         for (force, told) in [(1.9, false), (2.1, true)] {
             plant.lacks = Some(Series {
                 time: vec![0.0, 0.1, 0.2],
@@ -101,7 +105,7 @@ mod tests {
                 known: vec![true, false, true],
             });
             let node = fit::evaluated(&plant, Plant::model(&[]), 0);
-            let places = places(&plant, &node, 2.0, "V");
+            let places = places(&plant, &node, (2.0, plant.budget()), "V");
             assert_eq!(places.len(), usize::from(told), "{places:?}");
             let size = |remains: &Remains| match remains {
                 Remains::MissingForce { rms, unit, .. } => (rms - 2.1).abs() < 1e-9 && unit == "V",

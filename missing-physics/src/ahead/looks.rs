@@ -379,6 +379,7 @@ impl<'a> Run<'a> {
         let (family, ahead, settings) = (reading.family, reading.asked(on_part), self.settings);
         found.stopped |= (self.stop)();
         found.so_far(family, ahead);
+        found.place_noise(family, ahead, &self.thresholds);
         let report = Report { family, ahead, settings, found, brief: on_part, stop: self.stop };
         let mut discovery = report.discovery();
         discovery.remarks.extend(family.reading());

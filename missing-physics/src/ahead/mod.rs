@@ -14,6 +14,7 @@ pub mod compare;
 pub mod fit;
 mod foretold;
 mod found;
+mod input_noise;
 mod intervals;
 mod law;
 mod local;

@@ -76,6 +76,10 @@ impl Report<'_> {
         if budget.last < SENSORS_BETTER {
             remarks.push(Remark::SensorsBetter { times: budget.last });
         }
+        if let Some(deviation) = self.found.input_noise {
+            let (input, unit) = (quantity.name, quantity.unit);
+            remarks.push(Remark::InputNoise { input, deviation, unit });
+        }
         let mut discovery = Discovery {
             verdict,
             added,

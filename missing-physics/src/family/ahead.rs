@@ -16,6 +16,12 @@ pub trait Ahead: Sync {
     /// Standard deviation of the prediction error that the sensors alone make.
     fn budget(&self) -> f64;
 
+    /// Standard deviation, from sample to sample, of the noise of the input that a setting stands for; nothing where it stands for
+    /// something else. [`expected`](Self::expected) is the error that it makes.
+    fn input_noise(&self, _setting: usize) -> Option<f64> {
+        None
+    }
+
     /// Prediction errors of models of the same terms, each at its own setting: one value per instant that
     /// counts.
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>>;

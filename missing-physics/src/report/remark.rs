@@ -44,6 +44,16 @@ pub enum Remark {
         /// Prediction error of the last model in multiples of what the sensors make.
         times: f64,
     },
+    /// The last model errs more than the sensors make it, and as much as noise of the input does that the recording does not hold:
+    /// what it leaves is white.
+    InputNoise {
+        /// The input.
+        input: String,
+        /// Standard deviation of that noise from sample to sample.
+        deviation: f64,
+        /// Its SI unit.
+        unit: String,
+    },
     /// Time ran out, or Ctrl-C came, after the search: maps and tests of the residual were left out.
     ToldInBrief,
     /// Of a very long recording pieces spread over it were looked at.

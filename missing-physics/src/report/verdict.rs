@@ -30,7 +30,7 @@ pub struct Budget {
     /// Up to this multiple a model is complete, where nothing is left at one place.
     #[serde(default)]
     pub allowed: f64,
-    /// Whether the last model leaves no more than sensors make.
+    /// Whether the last model leaves no more than sensors make, or noise of the input ([`InputNoise`](super::Remark::InputNoise)).
     pub complete: bool,
 }
 

@@ -243,6 +243,7 @@ impl Search<'_> {
             last_screening: beside.promises,
             rival,
             complete: false,
+            input_noise: None,
             places: Vec::new(),
             remarks: std::mem::take(&mut self.remarks),
             decisions,
@@ -266,8 +267,15 @@ impl Search<'_> {
         let mut all = Vec::new();
         for size in 0..climb.nodes.len().max(last_size + 1) {
             let is_last = size == last_size;
-            let twins = self.twins.iter().filter(|set| is_last && special(set) == special(last));
-            let sets = climb.nodes.get(size).into_iter().flatten().chain(twins);
+            // A spring that is at rest elsewhere than at zero has an offset more than a pendulum, and counts as one effect as that
+            // does: of other sizes those count that predict no worse.
+            let other_sizes = climb.nodes.iter().enumerate().filter(|(other, _)| *other != size);
+            let no_worse = other_sizes.flat_map(|(_, sets)| sets).filter(|set| {
+                special(set) == special(last) && self.comparison.compare(last, set).nats >= 0.0
+            });
+            let twins = self.twins.iter().filter(|set| special(set) == special(last));
+            let beside = is_last.then(|| twins.chain(no_worse)).into_iter().flatten();
+            let sets = climb.nodes.get(size).into_iter().flatten().chain(beside);
             let others = sets.filter(|set| !is_last || self.key(set) != known);
             let sets: Vec<&Node> = is_last.then_some(last).into_iter().chain(others).collect();
             let Some(first) = sets.iter().min_by(|a, b| a.deviation.total_cmp(&b.deviation)) else {

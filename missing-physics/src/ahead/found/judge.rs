@@ -4,6 +4,7 @@ use super::Found;
 use crate::ahead::astray::astray;
 use crate::ahead::compare::Comparison;
 use crate::ahead::foretold::{is_foretold, is_loss};
+use crate::ahead::input_noise::InputNoise;
 use crate::ahead::node::Node;
 use crate::ahead::{Ahead, local};
 use crate::family::ModelFamily;
@@ -23,9 +24,35 @@ impl Found {
     /// Where the last model fails, and whether it does at all.
     pub fn place(&mut self, family: &dyn ModelFamily, ahead: &dyn Ahead, thresholds: &Thresholds) {
         let top = self.rungs.last().unwrap_or(&self.base);
-        self.places = left_by(top, family, ahead, thresholds);
+        self.places = left_by((top, ahead.budget()), family, ahead, thresholds);
         self.places.splice(0..0, self.rival.clone());
         self.complete = top.scale / ahead.budget() <= thresholds.complete && self.places.is_empty();
+    }
+
+    /// Whether noise of the input makes all that the last model leaves, where no look finds more: not where something gains
+    /// clearly that is not named, as nothing follows noise.
+    pub fn place_noise(
+        &mut self,
+        family: &dyn ModelFamily,
+        ahead: &dyn Ahead,
+        thresholds: &Thresholds,
+    ) {
+        let not_named = |remark: &Remark| matches!(remark, Remark::NotTheCause { because, .. } if *because != Some(NoCause::Foretold));
+        let gains = self.rival.is_some()
+            || self.alike > thresholds.better * (1.0 + f64::EPSILON.sqrt())
+            || self.remarks.iter().any(not_named);
+        let (top, _) = self.top();
+        let beyond = top.scale > thresholds.complete * ahead.budget();
+        if !beyond || gains || self.stopped {
+            return;
+        }
+        let leaves_nothing =
+            |noise: &InputNoise| left_by((top, noise.error), family, ahead, thresholds).is_empty();
+        let noise = InputNoise::of(ahead, top, thresholds.complete).filter(leaves_nothing);
+        if let Some(noise) = noise {
+            self.places.clear();
+            (self.complete, self.input_noise) = (true, Some(noise.deviation));
+        }
     }
 
     /// Takes all names back where they are not the cause: the error does not fall with them, what is left is in a few wild
@@ -158,12 +185,13 @@ impl Found {
             lacking,
             because,
         });
-        self.places = left_by(&self.base, family, ahead, thresholds);
+        self.places = left_by((&self.base, ahead.budget()), family, ahead, thresholds);
         self.without_names();
     }
 
     fn without_names(&mut self) {
         self.complete = false;
+        self.input_noise = None;
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();
@@ -178,14 +206,14 @@ pub fn leaves_most(base: &Node, node: &Node, budget: f64) -> bool {
     beyond(base) <= 0.0 || beyond(node) > LEFT * beyond(base)
 }
 
-/// What a model leaves, whether its errors show it or not.
+/// What a model leaves beside errors of the size that noise makes, whether they show it or not.
 fn left_by(
-    node: &Node,
+    (node, noise): (&Node, f64),
     family: &dyn ModelFamily,
     ahead: &dyn Ahead,
     thresholds: &Thresholds,
 ) -> Vec<Remains> {
-    let shows = local::places(ahead, node, thresholds.local, &family.quantity().unit);
+    let shows = local::places(ahead, node, (thresholds.local, noise), &family.quantity().unit);
     let astray =
         astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray });
     let hidden = ahead.remains(&node.model, thresholds.complete);
@@ -231,6 +259,31 @@ mod tests {
             found.place(&plant, &plant, &Thresholds { complete, ..Thresholds::default() });
             assert_eq!((found.complete, found.places.len()), (is, 0), "{complete}");
         }
+    }
+
+    #[test]
+    fn noise_of_the_input_is_asked_last_and_only_where_nothing_gains_without_a_name() {
+        // Of a plant that says nothing of such a noise all stays as it was.
+        let (plant, mut found) = found(None);
+        let thresholds = Thresholds { complete: 0.5, ..Thresholds::default() };
+        found.place(&plant, &plant, &thresholds);
+        found.place_noise(&plant, &plant, &thresholds);
+        assert_eq!((found.complete, found.input_noise), (false, None));
+        // Beside one that has it and is in the way.
+        let walk = crate::ahead::input_noise::testing::Walk::new(1, (0.8, 1.0), |_| 0.0);
+        let base = walk.best();
+        let told = |alike: f64, change: fn(&mut Found)| {
+            let mut found = Found { alike, ..Found::of(base.clone()) };
+            change(&mut found);
+            found.place_noise(&plant, &walk, &Thresholds::default());
+            (found.complete, found.input_noise.is_some())
+        };
+        let better = Thresholds::default().better;
+        assert!(base.scale > Thresholds::default().complete);
+        assert_eq!(told(better, |_| ()), (true, true));
+        assert_eq!(told(1.1 * better, |_| ()), (false, false));
+        assert_eq!(told(better, |found| found.stopped = true), (false, false));
+        assert_eq!(told(better, |found| found.rival = Some(Remains::TooCoarse)), (false, false));
     }
 
     #[test]

@@ -296,3 +296,24 @@ fn sets_are_alike_by_what_this_search_asks_of_an_effect_or_what_gains_more_witho
     assert_eq!(alike(Vec::new()), narrow().better);
     assert!(alike(vec![node(&plant, &hidden)]) > 2.0 * narrow().better);
 }
+
+#[test]
+fn a_set_of_a_usual_effect_more_is_an_alternative_where_it_predicts_no_worse() {
+    let mut plant = Plant::new(9, &[(WAVE, &[0.05])]);
+    let alternatives = |plant: &Plant, twin: f64| {
+        let wave = node(plant, &[(WAVE, &[0.049])]);
+        // However far behind, what is as large is alike.
+        let search = search(plant, Thresholds { better: 1e9, ..narrow() });
+        let more = node(plant, &[(PUSH, &[1e-5]), (TWIN, &[twin])]);
+        let climb = climb(plant, vec![vec![wave.clone()], vec![more]]);
+        let cost = search.comparison.compare(&climb.base, &wave);
+        let costs = vec![(WAVE, cost, climb.base.clone())];
+        let found = search.conclude(climb, &wave, (costs, 0.0), Screened::default(), None);
+        found.sets[1].len() - 1
+    };
+    // Where not every system has it these are two effects.
+    assert_eq!(alternatives(&plant, 0.05), 0);
+    plant.usual = vec![PUSH];
+    assert_eq!(alternatives(&plant, 0.05), 1);
+    assert_eq!(alternatives(&plant, 0.03), 0);
+}
