@@ -3,7 +3,7 @@
 use missing_physics::measurement::quantity::{number, percent, quantity};
 use missing_physics::report::{
     Confirmation, Confirmed, DetectionLimit, Diagnosis, Discovery, Estimate, MissingForce,
-    NamedError, NamedValue, Rung, Surrogates, Verdict, Whiteness, floor_key,
+    NamedError, NamedValue, Remark, Rung, Surrogates, Verdict, Whiteness, floor_key,
 };
 
 mod axes;
@@ -170,7 +170,17 @@ pub fn verdict(discovery: &Discovery) -> &'static str {
 pub fn completeness(discovery: &Discovery) -> Option<String> {
     let budget = discovery.budget?;
     let word = if budget.complete { "complete" } else { "incomplete" };
-    Some(format!("{word}: {} times what the sensors make is left", times(budget.last)))
+    let noise = noise_of_input(discovery);
+    Some(format!("{word}: {} times what the sensors make is left{noise}", times(budget.last)))
+}
+
+/// What makes more than the sensors do, if that is noise of the input: `, which noise of the force makes`.
+fn noise_of_input(discovery: &Discovery) -> String {
+    let input = discovery.remarks.iter().find_map(|remark| match remark {
+        Remark::InputNoise { input, .. } => Some(input),
+        _ => None,
+    });
+    input.map_or_else(String::new, |input| format!(", which noise of the {input} makes"))
 }
 
 /// A multiple of what the sensors make: `1.05`, `3.1`, `120`.
@@ -553,6 +563,13 @@ mod tests {
         assert_eq!(said(false), "incomplete: 3.1 times what the sensors make is left");
         let unknown = Discovery { budget: None, ..discovery("effects_found", true) };
         assert_eq!(completeness(&unknown), None);
+        let noise = Remark::InputNoise { input: "force".into(), deviation: 0.5, unit: "N".into() };
+        let noisy = Discovery { remarks: vec![noise], ..discovery("nothing_missing", true) };
+        let of_noise = "3.1 times what the sensors make is left, which noise of the force makes";
+        assert_eq!(completeness(&noisy).unwrap(), format!("complete: {of_noise}"));
+        assert!(
+            summary(&noisy).contains("the sensors make it, which noise of the force makes, and no")
+        );
     }
 
     #[test]

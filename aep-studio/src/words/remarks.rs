@@ -165,7 +165,7 @@ mod tests {
     fn noise_of_the_input_is_told_with_its_size() {
         let (input, unit) = ("force".into(), "N".into());
         let told = remark(&Remark::InputNoise { input, deviation: 0.55, unit });
-        assert!(told.contains("as large as a noise of the force of 550 mN from sample"), "{told}");
+        assert!(told.contains("as large as a noise of the force of 0.550 N from sample"), "{told}");
     }
 
     #[test]

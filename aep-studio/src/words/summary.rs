@@ -7,7 +7,7 @@ use missing_physics::report::{Ambiguity, Budget, Candidate, Rung, Verdict};
 
 use super::places::pattern;
 use super::remains::remains;
-use super::{chance, is_cut, main_error, nats};
+use super::{chance, is_cut, main_error, nats, noise_of_input};
 
 /// The verdict in one or two sentences; empty where nothing was looked for.
 pub fn summary(discovery: &Discovery) -> String {
@@ -41,9 +41,10 @@ const STOPPED: &str = "Stopped: the search was cut before anything could be said
 fn verdict(discovery: &Discovery, budget: &Budget) -> String {
     match discovery.verdict {
         Verdict::NothingMissing => format!(
-            "Nothing is missing: one sample ahead the base model errs {:.2} times as much as the sensors make it, and no \
+            "Nothing is missing: one sample ahead the base model errs {:.2} times as much as the sensors make it{}, and no \
              effect of the library lowers that by more than chance.",
-            budget.base
+            budget.base,
+            noise_of_input(discovery)
         ),
         Verdict::Unexplained if budget.last <= budget.allowed => format!(
             "One sample ahead the model errs {:.2} times as much as the sensors make it, but something is left that no \
