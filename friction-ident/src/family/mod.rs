@@ -545,7 +545,7 @@ impl ModelFamily for FrictionFamily {
     }
 
     fn shown(&self) -> Option<&dyn ModelFamily> {
-        Some(self.on_view())
+        Some(self.on_view.as_deref()?)
     }
 
     fn quantity(&self) -> ComparedQuantity {

@@ -8,6 +8,7 @@
 
 use super::Ahead;
 use super::fit;
+use super::law::runs;
 use super::node::Node;
 use super::statistics::{HUBER, spread};
 
@@ -26,8 +27,8 @@ pub struct InputNoise {
 }
 
 impl InputNoise {
-    /// The noise as large as the errors of a model say; nothing where they are no more than `factor` from those of such a noise at no
-    /// rung near the model's own.
+    /// The noise as large as the errors of a model say, at its own rung or one beside it; nothing where they are at none of these like
+    /// those of such a noise, to within `factor`.
     pub fn of(ahead: &dyn Ahead, node: &Node, factor: f64) -> Option<Self> {
         let beside = [node.setting.checked_sub(1), Some(node.setting + 1)];
         let other = |setting: usize| {
@@ -69,12 +70,9 @@ impl InputNoise {
 fn ratios(ahead: &dyn Ahead, errors: &[f64]) -> Vec<f64> {
     let cut = HUBER * spread(errors);
     let tame: Vec<f64> = errors.iter().map(|e| e.clamp(-cut, cut)).collect();
+    let runs = runs(ahead.instants());
     let windows = |length: usize| {
-        let pieces = ahead.instants().chunk_by(|a, b| a.1 == b.1).scan(0, |end, piece| {
-            *end += piece.len();
-            Some(*end - piece.len()..*end)
-        });
-        pieces.flat_map(|piece| tame[piece].chunks_exact(length)).collect::<Vec<_>>()
+        runs.iter().flat_map(|run| tame[run.clone()].chunks_exact(length)).collect::<Vec<_>>()
     };
     let enough = |each: &Vec<&[f64]>| each.len() >= FEWEST;
     let ratio = |each: Vec<&[f64]>| {
@@ -115,9 +113,13 @@ pub mod testing {
             Self { measured, instants: (0..SAMPLES).map(|k| (k as f64, k / 1500)).collect() }
         }
 
+        fn noise(setting: usize) -> f64 {
+            0.01 * 3.2_f64.powi(setting as i32)
+        }
+
         /// Gain at a setting, and the deviation of the error that it expects.
         fn filter(setting: usize) -> (f64, f64) {
-            let noise = 0.01 * 3.2_f64.powi(setting as i32);
+            let noise = Self::noise(setting);
             let p = noise * noise / 2.0 + noise * (noise * noise / 4.0 + 1.0).sqrt();
             (p / (p + 1.0), (p + 1.0).sqrt())
         }
@@ -139,7 +141,7 @@ pub mod testing {
             Self::filter(setting).1
         }
         fn input_noise(&self, setting: usize) -> Option<f64> {
-            Some(0.01 * 3.2_f64.powi(setting as i32))
+            Some(Self::noise(setting))
         }
         fn budget(&self) -> f64 {
             1.0

@@ -50,7 +50,7 @@ impl Law {
 }
 
 /// The errors of each piece.
-fn runs(instants: &[(f64, usize)]) -> Vec<Range<usize>> {
+pub(super) fn runs(instants: &[(f64, usize)]) -> Vec<Range<usize>> {
     let mut first = 0;
     let piece = |piece: &[(f64, usize)]| {
         first += piece.len();

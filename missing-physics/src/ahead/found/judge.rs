@@ -191,7 +191,6 @@ impl Found {
 
     fn without_names(&mut self) {
         self.complete = false;
-        self.input_noise = None;
         self.rungs.clear();
         self.added.clear();
         self.gains.clear();
