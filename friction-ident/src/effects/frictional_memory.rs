@@ -3,7 +3,8 @@
 mod whole;
 
 use super::{
-    About, Begun, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, Before, Begin, Begun, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past,
+    Recalled, Slot, Taken,
 };
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
@@ -84,6 +85,11 @@ impl Effect for FrictionalMemory {
         Some(WHOLE)
     }
 
+    /// With nothing of the viscous friction.
+    fn begins_flexible(&self, _before: &Before<'_>) -> Begin {
+        Begin::at([("F_w", 0.0)])
+    }
+
     fn memory(&self) -> Option<&dyn Memory> {
         Some(self)
     }
@@ -144,6 +150,11 @@ impl Effect for Lagged {
 
     fn flexible_form(&self) -> Option<&'static str> {
         Some(WHOLE)
+    }
+
+    /// With nothing of the viscous friction.
+    fn begins_flexible(&self, _before: &Before<'_>) -> Begin {
+        Begin::at([("F_w", 0.0)])
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

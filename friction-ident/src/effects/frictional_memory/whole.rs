@@ -1,6 +1,6 @@
 //! Frictional memory of the whole friction curve: the viscous part follows, too.
 
-use super::{LAGGED, SHOWS, TIME};
+use super::{LAGGED, SHOWS};
 use crate::axis::Quantity;
 use crate::effects::{
     About, Begun, CDynamics, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
@@ -9,7 +9,8 @@ use crate::effects::{
 use crate::simd::vectorised;
 
 /// As [`super::Lagged`], and a viscous friction `F_w w` follows the speed with the level, against the motion as it is: what a
-/// film of oil does that must build up first.
+/// film of oil does that must build up first. Without a hump beside it the viscous friction alone follows. None of it is
+/// negative: that is a body which is dragged along behind a damper.
 #[derive(Clone, Copy, Debug)]
 pub struct Whole;
 
@@ -18,8 +19,8 @@ static ABOUT: About = About {
     title: "frictional memory of level and viscous friction",
     equation: "the friction level follows w with tau_L w' + w = |v|; F_w w s beside it",
     parameters: &[
-        TIME,
-        Parameter::signed("F_w", "viscous friction that follows", Quantity::Damping, 5000.0, 200.0),
+        Parameter::shape("tau_L", "delay of the friction", Quantity::Time, (1e-4, 1.0), 0.01),
+        Parameter::level("F_w", "viscous friction that follows", Quantity::Damping, 5000.0, 200.0),
     ],
     slots: &[Slot::Memory],
     shows: SHOWS,
@@ -46,11 +47,6 @@ m->remembered += {F_w} * {s0};",
     /// None of it may follow.
     fn whatever(&self) -> &'static [&'static str] {
         &["F_w"]
-    }
-
-    /// Alone it is a body behind a damper.
-    fn is_only_flexible(&self) -> bool {
-        true
     }
 
     fn memory(&self) -> Option<&dyn Memory> {
