@@ -123,11 +123,16 @@ impl<'a> Begun<'a> {
     /// What is found in the reading that stands: on all of the recording, judged.
     fn finished(self) -> Sought<'a> {
         let (thresholds, until, stop) = (self.thresholds, self.until, self.stop);
+        let all_or_nothing = self.here.search.all_or_nothing;
         let (reading, found) = self.found();
         let (family, whole) = (reading.family, &*reading.whole);
         let Some(part) = &reading.part else {
             return Sought { reading, found, on_part: false }.judged(&thresholds);
         };
+        // What leaves something there does not count, and was not asked whether chance gains as much.
+        if all_or_nothing && !found.complete {
+            return Sought { reading, found, on_part: true }.judged(&thresholds);
+        }
         // No less than this is asked of all of the recording, and takes so much longer there.
         let models = (1 + found.rungs.len()) as u32;
         let in_time = until.is_none_or(|until| {
@@ -403,6 +408,7 @@ fn is_over(settings: &Settings<'_>, started: Instant) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ahead::testing::{BEAT, BOTH, DRIVE, PUSH, Plant, TONE, TWIN, WAVE};
 
     #[test]
     fn more_of_a_recording_is_searched_where_the_limit_leaves_as_much_longer_as_there_is_more() {
@@ -424,5 +430,31 @@ mod tests {
         assert!(is_over(&asked, started));
         let time_limit = Some(Duration::ZERO);
         assert!(is_over(&Settings { time_limit, ..Settings::default() }, started));
+    }
+
+    #[test]
+    fn of_a_look_that_leaves_something_on_a_part_nothing_is_asked_of_the_whole() {
+        // A frequency that no tone can have, in the pieces alone.
+        let mut plant = Plant::new(5, &[(WAVE, &[0.05])]);
+        let pieces = Plant::new(6, &[(WAVE, &[0.05]), (TONE, &[0.02, 30.0])]);
+        plant.pieces = Some((Box::new(pieces), 0.1));
+        let reading = Reading::of(&plant).unwrap();
+        let (settings, never) = (Settings::default(), || false);
+        let finished = |all_or_nothing| {
+            let run = Run {
+                settings: &settings,
+                sets: (&[DRIVE], &[BEAT, BOTH, TONE, PUSH, TWIN]),
+                thresholds: settings.thresholds,
+                started: Instant::now(),
+                stop: &never,
+                tell: &|_| {},
+                all_or_nothing,
+            };
+            let sought = run.begun(&reading, None).finished();
+            (sought.on_part, sought.found.complete, sought.found.added, sought.found.stopped)
+        };
+        assert_eq!(finished(false), (false, true, vec![WAVE], false));
+        // The same as it was found: not taken back for want of what chance gains, which was not asked.
+        assert_eq!(finished(true), (true, false, vec![WAVE], false));
     }
 }
