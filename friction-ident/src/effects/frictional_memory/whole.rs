@@ -49,6 +49,11 @@ m->remembered += {F_w} * {s0};",
         &["F_w"]
     }
 
+    /// Alone it does what a soft friction does beside a delay, too.
+    fn is_only_flexible(&self) -> bool {
+        true
+    }
+
     fn memory(&self) -> Option<&dyn Memory> {
         Some(self)
     }
