@@ -1,6 +1,6 @@
 //! Frictional memory of the whole friction curve: the viscous part follows, too.
 
-use super::{LAGGED, SHOWS};
+use super::{LAGGED, SHOWS, TIME};
 use crate::axis::Quantity;
 use crate::effects::{
     About, Begun, CDynamics, CLaw, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
@@ -19,7 +19,7 @@ static ABOUT: About = About {
     title: "frictional memory of level and viscous friction",
     equation: "the friction level follows w with tau_L w' + w = |v|; F_w w s beside it",
     parameters: &[
-        Parameter::shape("tau_L", "delay of the friction", Quantity::Time, (1e-4, 1.0), 0.01),
+        Parameter { high: 1.0, ..TIME },
         Parameter::level("F_w", "viscous friction that follows", Quantity::Damping, 5000.0, 200.0),
     ],
     slots: &[Slot::Memory],
@@ -49,7 +49,7 @@ m->remembered += {F_w} * {s0};",
         &["F_w"]
     }
 
-    /// Alone it does what a soft friction does beside a delay, too.
+    /// By itself it gains beside a delay that leaves nothing, too.
     fn is_only_flexible(&self) -> bool {
         true
     }
