@@ -11,20 +11,29 @@ use crate::failure::Failure;
 
 mod bars;
 mod check;
+mod compared;
 mod confirmation;
 mod discovery;
+mod failing;
+mod ladder;
+mod parameters;
+mod ranking;
 mod residual;
 mod simulated;
 mod style;
 mod table;
+#[cfg(test)]
+mod tests;
 mod views;
 
 pub use check::data_check;
+pub use compared::{compared, comparisons};
 pub use confirmation::{confirmation, surrogates};
-pub use discovery::{
-    Columns, compared, comparisons, ladder, note, notes, parameters, ranking, regimes, together,
-    verdict, where_it_fails, why,
-};
+pub use discovery::{note, notes, verdict, why};
+pub use failing::{regimes, where_it_fails};
+pub use ladder::ladder;
+pub use parameters::{parameters, together};
+pub use ranking::{Columns, ranking};
 pub use residual::{lines, tests};
 pub use simulated::simulated;
 pub use style::{bold, dim, heading};

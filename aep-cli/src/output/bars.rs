@@ -1,5 +1,8 @@
 //! Bars of text.
 
+/// Characters of a bar in most tables.
+pub const BAR: usize = 10;
+
 /// A bar of `width` characters for a share of 0..1, in eighths of a character.
 pub fn bar(share: f64, width: usize) -> String {
     const EIGHTHS: [char; 8] = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'];

@@ -1,4 +1,4 @@
-//! Emphasis. The stream takes it out again where there is no terminal or the user wants none.
+//! Emphasis, which the stream takes out again where there is no terminal or the user wants none, and lines.
 
 use anstyle::{AnsiColor, Style};
 
@@ -20,6 +20,25 @@ pub fn paint(colour: AnsiColor, text: &str) -> String {
 /// The heading of a part of the output.
 pub fn heading(text: &str) -> String {
     format!("\n{}\n", bold(text))
+}
+
+/// Lines of at most 98 characters.
+pub fn wrapped(text: &str) -> Vec<String> {
+    const WIDTH: usize = 98;
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last =
+            lines.last_mut().filter(|line| line.chars().count() + word.chars().count() < WIDTH);
+        match last {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            None => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 fn styled(style: Style, text: &str) -> String {

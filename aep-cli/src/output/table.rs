@@ -8,6 +8,9 @@ use comfy_table::{
 
 use super::heading;
 
+/// Characters of a line.
+pub const LINE: u16 = 100;
+
 /// Where the cells of a column stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {

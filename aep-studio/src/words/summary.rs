@@ -15,7 +15,7 @@ pub fn summary(discovery: &Discovery) -> String {
         return said;
     }
     let Some(budget) = discovery.budget else {
-        return if is_cut(discovery) { STOPPED.to_owned() } else { String::new() };
+        return if is_cut(discovery) { NOTHING_CERTAIN.to_owned() } else { String::new() };
     };
     let mut text = verdict(discovery, &budget);
     if !budget.complete {
@@ -36,7 +36,8 @@ pub fn summary(discovery: &Discovery) -> String {
     text
 }
 
-const STOPPED: &str = "Stopped: the search was cut before anything could be said for certain.";
+const NOTHING_CERTAIN: &str =
+    "Stopped: the search was cut before anything could be said for certain.";
 
 fn verdict(discovery: &Discovery, budget: &Budget) -> String {
     match discovery.verdict {
@@ -56,7 +57,7 @@ fn verdict(discovery: &Discovery, budget: &Budget) -> String {
              explains that.",
             budget.last
         ),
-        Verdict::Stopped => STOPPED.to_owned(),
+        Verdict::Stopped => NOTHING_CERTAIN.to_owned(),
         Verdict::EffectsFound | Verdict::Ambiguous => format!(
             "Missing: {}. With {} the prediction error falls from {:.2} to {:.2} times what the sensors make{}.",
             discovery.added.join(", "),
@@ -179,7 +180,7 @@ mod tests {
             json!([{"kind": "so_far", "effects": ["stribeck"], "nats": 830.0, "last": 1.1}]);
         let cut = Discovery { remains: serde_json::from_value(so_far).unwrap(), ..cut };
         let said = summary(&cut);
-        assert!(said.starts_with(STOPPED), "{said}");
+        assert!(said.starts_with(NOTHING_CERTAIN), "{said}");
         assert!(said.contains("Found so far: stribeck (+830 nats; 1.10 times"), "{said}");
         assert!(said.ends_with("Not tried: drift, ripple."), "{said}");
     }
