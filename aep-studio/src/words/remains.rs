@@ -45,6 +45,11 @@ pub fn remains(what: &Remains) -> String {
             quantity(*rms, unit),
             quantity(*band, unit)
         ),
+        Remains::UnknownForce { recorded, unit } => format!(
+            "What it lacks is nowhere known to a tenth of the recorded {} (rms): only the sensor predicts where the axis goes, and a \
+             model that lacks most would do as well.",
+            quantity(*recorded, unit)
+        ),
         Remains::Faulty { fault } => self::fault(fault),
         Remains::ErrorNear { coordinate, at, unit, times } => format!(
             "Near {coordinate} {} it errs {times:.1} times as much as the sensors make it.",

@@ -7,7 +7,8 @@ mod hysteresis;
 use super::memory::{BEGIN_OF_STEP, since_begin};
 use super::ripple::LEADS;
 use super::{
-    About, Begun, Came, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot, Taken,
+    About, AsFound, Begun, Came, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
+    Refused, Slot, Taken,
 };
 use crate::axis::Quantity;
 use crate::effects::CDynamics;
@@ -20,6 +21,11 @@ pub struct ReversalDecay;
 
 /// So far from the last reversal that nothing of it is left.
 const FAR: f64 = f64::MAX;
+/// What is over within a count of the position nobody sees: a contact that gives less than that would do as much.
+fn within_a_count(found: &AsFound<'_>) -> Option<Refused> {
+    found.within((1, "l"), found.count, "it is over within a count of the position")
+}
+
 static FORMS: [&dyn Effect; 2] = [&hysteresis::Hysteresis, &bouc_wen::BoucWen];
 
 static ABOUT: About = About {
@@ -68,6 +74,10 @@ impl Effect for ReversalDecay {
 
     fn forms(&self) -> &'static [&'static dyn Effect] {
         &FORMS
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        within_a_count(found)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

@@ -431,7 +431,7 @@ impl<'a> Search<'a> {
 
     /// Whether a model errs no more than the sensors make, and lacks no force beyond doubt.
     fn leaves_nothing(&self, node: &Node) -> bool {
-        let in_doubt = |(force, band)| force <= self.thresholds.local * band;
+        let in_doubt = |(force, band)| force <= self.thresholds.complete * band;
         self.budget(node) <= 1.0 && node.lacks(self.ahead).is_some_and(in_doubt)
     }
 

@@ -4,6 +4,7 @@
 use super::Ahead;
 use super::node::Node;
 use crate::report::{Fault, Remains};
+use crate::task::Thresholds;
 
 /// Bins of equal count along time and each coordinate.
 const BINS: usize = 40;
@@ -14,20 +15,21 @@ const ALONE: f64 = 8.0;
 /// Share of the squared error in so few samples from which they are told as faults of the sampling.
 const FAULTS: (f64, f64) = (0.5, 0.01);
 
-/// Places where a model errs more than `factor` times as much as the `noise` makes it, the worst first; before them the
-/// force that it lacks (in `unit`), where that is as much larger than its band.
+/// Places where a model errs more than [`Thresholds::local`] times as much as the `noise` makes it, the worst first; before
+/// them the force that it lacks (in `unit`), where that is larger than its band by more than [`Thresholds::complete`], or
+/// nowhere known.
 pub fn places(
     ahead: &dyn Ahead,
-    node: &Node,
-    (factor, noise): (f64, f64),
+    (node, noise): (&Node, f64),
+    thresholds: &Thresholds,
     unit: &str,
 ) -> Vec<Remains> {
+    let factor = thresholds.local;
     let time = ahead.instants().iter().map(|(time, _)| *time).collect();
     let mut along = vec![("time".to_owned(), "s".to_owned(), time)];
     along.extend(ahead.along());
     let mut worst: Vec<(f64, Remains)> = Vec::new();
-    if let Some((rms, band)) = node.lacks(ahead).filter(|(rms, band)| *rms > factor * band) {
-        let lacks = Remains::MissingForce { rms, band, unit: unit.to_owned() };
+    if let Some(lacks) = missing(ahead, node, thresholds.complete, unit) {
         worst.push((f64::INFINITY, lacks));
     }
     let isolated = faults(&node.errors).map(|share| Fault::Isolated { share });
@@ -42,6 +44,17 @@ pub fn places(
     }
     worst.sort_by(|a, b| b.0.total_cmp(&a.0));
     worst.into_iter().map(|(_, remains)| remains).collect()
+}
+
+/// The force that a model lacks, where it is more than so many bands or nothing is known of it anywhere: such a model does
+/// not predict what the axis does, the sensor alone does.
+fn missing(ahead: &dyn Ahead, node: &Node, bands: f64, unit: &str) -> Option<Remains> {
+    let unit = unit.to_owned();
+    if let Some((rms, band)) = node.lacks(ahead) {
+        return (rms > bands * band).then_some(Remains::MissingForce { rms, band, unit });
+    }
+    let unknown = node.missing_force(ahead).filter(|series| series.is_unknown())?;
+    Some(Remains::UnknownForce { recorded: unknown.recorded(), unit })
 }
 
 /// The largest rms of the errors of a bin along `values`, and where it is.
@@ -92,26 +105,31 @@ mod tests {
     }
 
     #[test]
-    fn a_force_that_is_twice_its_band_is_told_and_a_smaller_one_is_not() {
-        let mut plant = Plant::new(1, &[]);
-        let node = fit::evaluated(&plant, Plant::model(&[]), 0);
-        assert_eq!(places(&plant, &node, (2.0, plant.budget()), "V"), []);
-        for (force, told) in [(1.9, false), (2.1, true)] {
-            plant.lacks = Some(Series {
-                time: vec![0.0, 0.1, 0.2],
-                force: vec![force, 99.0, -force],
-                deviation: vec![1.0 / 1.96, 50.0, 1.0 / 1.96],
-                recorded: vec![9.0; 3],
-                known: vec![true, false, true],
-            });
+    fn a_force_beyond_its_band_is_told_and_one_that_is_nowhere_known_and_a_smaller_one_is_not() {
+        let places = |lacks: Option<Series>| {
+            let mut plant = Plant::new(1, &[]);
+            plant.lacks = lacks;
             let node = fit::evaluated(&plant, Plant::model(&[]), 0);
-            let places = places(&plant, &node, (2.0, plant.budget()), "V");
-            assert_eq!(places.len(), usize::from(told), "{places:?}");
-            let size = |remains: &Remains| match remains {
-                Remains::MissingForce { rms, unit, .. } => (rms - 2.1).abs() < 1e-9 && unit == "V",
-                _ => false,
-            };
-            assert!(places.iter().all(size), "{places:?}");
-        }
+            places(&plant, (&node, plant.budget()), &Thresholds::default(), "V")
+        };
+        let force = |force: f64, known: bool| Series {
+            time: vec![0.0, 0.1, 0.2],
+            force: vec![force, 99.0, -force],
+            deviation: vec![1.0 / 1.96, 50.0, 1.0 / 1.96],
+            recorded: vec![9.0; 3],
+            known: vec![known, false, known],
+        };
+        assert_eq!(places(None), []);
+        assert_eq!(places(Some(force(1.2, true))), []);
+        let unit = || "V".to_owned();
+        let [Remains::MissingForce { rms, band, unit: of }] = &places(Some(force(1.4, true)))[..]
+        else {
+            panic!("nothing is lacking")
+        };
+        assert!((rms - 1.4).abs() < 1e-9 && (band - 1.0).abs() < 1e-9 && *of == unit());
+        let unknown = Remains::UnknownForce { recorded: 9.0, unit: unit() };
+        assert_eq!(places(Some(force(1.2, false))), [unknown]);
+        // A family may tell nothing of any instant.
+        assert_eq!(places(Some(Series::default())), []);
     }
 }

@@ -26,6 +26,17 @@ impl Series {
         (force.is_finite() && band.is_finite()).then_some((force, band))
     }
 
+    /// Whether there are instants and nothing is known at any of them.
+    pub fn is_unknown(&self) -> bool {
+        !self.known.is_empty() && !self.known.contains(&true)
+    }
+
+    /// Root mean square of the recorded force.
+    pub fn recorded(&self) -> f64 {
+        let square: f64 = self.recorded.iter().map(|force| force * force).sum();
+        (square / self.recorded.len().max(1) as f64).sqrt()
+    }
+
     /// Root mean square of values at the instants at which the force is known.
     pub(crate) fn rms(&self, values: &[f64]) -> f64 {
         let known = values.iter().zip(&self.known).filter(|(_, known)| **known);

@@ -97,6 +97,14 @@ pub enum Remains {
         /// SI unit of both.
         unit: String,
     },
+    /// Whether it lacks a force is not known at any instant: the errors are those of a force that wanders as fast as the recorded
+    /// one is large, so that the sensor alone predicts.
+    UnknownForce {
+        /// Root mean square of the recorded force: nowhere is the missing one known to a tenth of it.
+        recorded: f64,
+        /// SI unit.
+        unit: String,
+    },
     /// The recording has a fault.
     Faulty {
         /// Which.

@@ -7,7 +7,8 @@ pub struct Thresholds {
     pub better: f64,
     /// Share of all that is explained that an effect must explain.
     pub share: f64,
-    /// A model whose errors exceed what the sensors make by more than this factor is incomplete.
+    /// A model whose errors exceed what the sensors make by more than this factor is incomplete, and so is one that lacks a force
+    /// of more than so many of its 95 % bands.
     pub complete: f64,
     /// A model that errs more than this many times what the sensors make at some place, at some time or in isolated
     /// samples is incomplete, whatever it does on the whole.

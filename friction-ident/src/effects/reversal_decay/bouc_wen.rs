@@ -1,12 +1,13 @@
 //! Hysteresis of another shape: how sharply it bends, and where on its way back.
 
 use super::hysteresis::{Hysteresis, LENGTH, SHOWS, SIZE, follow, turn};
+use super::within_a_count;
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
 use crate::effects::memory::since_begin;
 use crate::effects::{
-    About, Begun, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled, Slot,
-    Taken,
+    About, AsFound, Begun, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past,
+    Recalled, Refused, Slot, Taken,
 };
 use crate::simd::{exp, ln, sign, vectorised};
 
@@ -69,6 +70,10 @@ impl Effect for BoucWen {
 
     fn whatever(&self) -> &'static [&'static str] {
         &["n", "beta"]
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        within_a_count(found)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

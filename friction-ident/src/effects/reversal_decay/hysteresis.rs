@@ -1,11 +1,12 @@
 //! Hysteresis: cables in a chain, seals and wipers that bend before they slide.
 
+use super::within_a_count;
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
 use crate::effects::memory::{BEGIN_OF_STEP, since_begin};
 use crate::effects::{
-    About, Begun, CDynamics, Came, Effect, Memory, Motion, Parameter, Parameters, Past, Recalled,
-    Slot, Taken,
+    About, AsFound, Begun, CDynamics, Came, Effect, Memory, Motion, Parameter, Parameters, Past,
+    Recalled, Refused, Slot, Taken,
 };
 use crate::simd::{exp, sign, vectorised};
 
@@ -62,6 +63,10 @@ impl Effect for Hysteresis {
 
     fn flexible_form(&self) -> Option<&'static str> {
         Some("reversal-decay:bouc-wen")
+    }
+
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        within_a_count(found)
     }
 
     fn memory(&self) -> Option<&dyn Memory> {

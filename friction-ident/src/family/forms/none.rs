@@ -264,6 +264,14 @@ mod tests {
         assert_eq!(gap(2.1 * count), None);
         assert!(matches!(gap(1.9 * count), Some(Refusal::NotThatEffect { limit, meaning, .. })
             if meaning.contains("two counts") && (limit / count - 2.0).abs() < 1e-9));
+        for form in ["", ":hysteresis", ":bouc-wen"] {
+            let name = format!("reversal-decay{form}");
+            assert_eq!(said(&family, &name, &[("l", 1.1 * count)]), None, "{name}");
+            assert!(
+                matches!(said(&family, &name, &[("l", 0.9 * count)]), Some(Refusal::NotThatEffect { limit, meaning, .. })
+                if meaning.contains("within a count") && (limit / count - 1.0).abs() < 1e-9)
+            );
+        }
         let term = family.terms.iter().find(|term| term.name == "flexible-coupling").unwrap();
         let most = term.parameters.iter().find(|p| p.name == "f").unwrap().upper;
         let coupling = |f: f64| said(&family, "flexible-coupling", &[("f", f)]);

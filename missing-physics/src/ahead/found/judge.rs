@@ -212,7 +212,7 @@ fn left_by(
     ahead: &dyn Ahead,
     thresholds: &Thresholds,
 ) -> Vec<Remains> {
-    let shows = local::places(ahead, node, (thresholds.local, noise), &family.quantity().unit);
+    let shows = local::places(ahead, (node, noise), thresholds, &family.quantity().unit);
     let astray =
         astray(family, &node.model, ahead.has_shares()).map(|astray| Remains::Astray { astray });
     let hidden = ahead.remains(&node.model, thresholds.complete);
@@ -332,7 +332,7 @@ mod tests {
 
     #[test]
     fn names_stand_where_that_force_is_not_known_or_nothing_is_left() {
-        for lacks in [Some(1.5), None] {
+        for lacks in [Some(1.6), None] {
             let (plant, mut found) = found(lacks);
             found.judge(&plant, &plant, &Thresholds::default());
             assert!(found.complete, "{:?}", found.places);

@@ -105,7 +105,7 @@ fn beside_a_base_that_leaves_nothing_a_rival_is_no_finding() {
     let plant = Plant::new(12, &[(RIVAL, &[5e-4])]);
     let mut search = search(&plant, Thresholds { better: 5.0, ..narrow() });
     let mut climb = climb(&plant, Vec::new());
-    for (force, nothing) in [(1.1, false), (0.9, true)] {
+    for (force, nothing) in [(0.7, false), (0.6, true)] {
         climb.base = lacks(&climb.base, force, 0.5);
         let last = climb.base.clone();
         assert_eq!(search.leaves_nothing(&last), nothing, "{force}");
@@ -123,7 +123,7 @@ fn what_a_refused_set_takes_back_beside_a_base_that_leaves_nothing_is_not_nothin
     for (best, told) in [(&hidden[..1], true), (&[], false)] {
         let mut climb = climb(&plant, Vec::new());
         climb.base.scale = 0.9 * crate::ahead::testing::NOISE;
-        climb.base = lacks(&climb.base, 0.9, 0.5);
+        climb.base = lacks(&climb.base, 0.6, 0.5);
         let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
         climb.refused.push((node(&plant, &hidden[1..]), refusal));
         let search = search(&plant, Thresholds { share: 0.0, ..narrow() });
