@@ -237,7 +237,8 @@ impl<'a> Search<'a> {
                 asks = false;
             }
             let last = self.plainest(needed, &costs);
-            if let Some(base) = self.with_other_law(&climb, &last) {
+            let other = self.with_other_law(&climb, &last);
+            if let Some(base) = other.or_else(|| self.with_reading(&climb, &last)) {
                 let climb = self.begin(base, Vec::new());
                 return self.finish(climb);
             }

@@ -99,6 +99,8 @@ pub struct Plant {
     pub most: Option<(usize, f64)>,
     /// Terms with the usual ones that they are other laws of.
     pub laws: Vec<(usize, usize)>,
+    /// A term that stands for how the recording is read.
+    pub read: Option<usize>,
     /// A term that may be another one as well.
     pub related: Option<(usize, usize)>,
     /// Frequencies beside that of a tone, rad/s.
@@ -200,6 +202,7 @@ impl Plant {
             usual: Vec::new(),
             most: None,
             laws: Vec::new(),
+            read: None,
             related: None,
             leaps: Vec::new(),
             part: None,
@@ -316,6 +319,11 @@ impl Ahead for Plant {
     fn vanishes(&self, model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
         let refusal = Refusal::AtLimit { parameter: "it is none".into() };
         self.none.filter(|term| model.terms.contains(term)).map(|term| (term, refusal))
+    }
+    fn of_reading(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
+        let refusal = Refusal::AtLimit { parameter: "it is the reading".into() };
+        let added = |term: &usize| model.terms.contains(term) && !base.terms.contains(term);
+        self.read.filter(added).map(|term| (term, refusal))
     }
     fn missing_force(&self, _: &Fitted, _: usize) -> Option<Series> {
         self.lacks.clone()

@@ -1,11 +1,13 @@
-//! Whether an effect is how a usual one of the base model is in this system.
+//! Whether an effect is how a usual one of the base model is in this system, or how its recording is read.
 //!
 //! A friction level that sets in with the speed is a level and no lubricant that thins: simulators smooth it so, and some
 //! guides do. Where an effect is another law of a usual one, and next to nothing of that one is left beside it, it is no
-//! effect that is missing, and the search begins once more from the base model with that law.
+//! effect that is missing, and the search begins once more from the base model with that law. So it does with what stands for
+//! the reading of the recording: how late a force acts belongs to the data, as its hold does.
 
 use super::{Climb, Search};
 use crate::ahead::node::Node;
+use crate::ahead::refused::as_read;
 use crate::family::Role;
 use crate::report::{Outcome, Reason, Remark};
 
@@ -32,6 +34,21 @@ impl Search<'_> {
         let name = |term: usize| self.family.terms()[term].name.clone();
         let nats = self.in_full(by.nats);
         self.remarks.push(Remark::OtherLaw { of: name(of), law: name(law), nats });
+        Some(with)
+    }
+
+    /// The base model with an effect of the last one that stands for how the recording is read, where others were found beside
+    /// it: without it these would be judged by what the reading leaves.
+    pub(super) fn with_reading(&mut self, climb: &Climb, last: &Node) -> Option<Node> {
+        let base = &climb.base;
+        if Self::added(base, last).len() < 2 || (self.stop)() {
+            return None;
+        }
+        let (term, refusal) = as_read(self.family, self.ahead, base, last)?;
+        let with = self.only(base, last, &[term]);
+        let by = self.comparison.compare(base, &with);
+        self.tell_refused(base, &with, &refusal);
+        self.note(1, &with, base, by, Outcome::Added, Some(Reason::Refused { refusal }));
         Some(with)
     }
 

@@ -79,3 +79,30 @@ fn of_a_usual_effect_that_the_base_has_none_of_nothing_is_left() {
     assert!(search.with_other_law(&climb, &last(0.0)).is_some());
     assert!(search.with_other_law(&climb, &last(0.01)).is_none());
 }
+
+#[test]
+fn what_stands_for_the_reading_beside_an_effect_stands_in_the_base() {
+    let found = |hidden: &[(usize, &[f64])]| {
+        let mut plant = Plant::new(21, hidden);
+        plant.read = Some(PUSH);
+        let thresholds = Thresholds { most: 2, ..narrow() };
+        let candidates = vec![PUSH, WAVE];
+        let mut search = Search::new(&plant, &plant, thresholds, candidates, &never, &|_| ());
+        let base = search.base(Plant::model(&[]));
+        let climb = search.begin(base, Vec::new());
+        search.finish(climb)
+    };
+    let read: (usize, &[f64]) = (PUSH, &[0.05]);
+    let both = found(&[read, (WAVE, &[0.1])]);
+    assert_eq!(both.added, [WAVE]);
+    assert_eq!(both.base.model.terms, [DRIVE, PUSH]);
+    assert!(both.complete && both.rival.is_none(), "{:?}", both.rival);
+    let [Remark::NotNamed { effects, .. }] = &both.remarks[..] else {
+        panic!("{:?}", both.remarks)
+    };
+    assert_eq!(effects, &["push"]);
+    // Alone it is what the base leaves.
+    let alone = found(&[read]);
+    assert!(alone.added.is_empty());
+    assert_eq!(alone.base.model.terms, [DRIVE]);
+}
