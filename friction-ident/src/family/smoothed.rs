@@ -46,7 +46,7 @@ impl FrictionFamily {
         let noise = self.ahead.as_ref()?.predictor.noise().force_at_most;
         let ahead = family.ahead.as_ref().map(|ahead| ahead.with_force_noise(noise));
         let smoothing = Some(cutoff / self.prepared.interval);
-        let family = Self { smoothing, ahead, jitter: self.jitter, ..family };
+        let family = Self { smoothing, ahead, hold: self.hold, jitter: self.jitter, ..family };
         match &self.on_view {
             Some(shown) => family.shown_below(shown.prepared.bandwidth).ok(),
             None => Some(family),
@@ -56,18 +56,22 @@ impl FrictionFamily {
 
 #[cfg(test)]
 mod tests {
-    use missing_physics::ModelFamily;
+    use missing_physics::{Hold, ModelFamily};
 
+    use crate::family::HoldChoice;
     use crate::family::testing::{family, model};
 
     #[test]
     fn a_filter_takes_the_noise_of_a_force_and_nothing_of_a_slow_one() {
-        let family = family();
+        let mut family = family();
+        family.hold = Some(HoldChoice { hold: Hold::Sampled, nats: 1.0, by_search: true });
         let (first, last) = (family.filtered(0).unwrap(), family.filtered(3).unwrap());
         assert!(family.filtered(4).is_none() && first.filtered(0).is_none());
         let below = |family: &super::FrictionFamily| family.smoothing.unwrap().round();
         assert_eq!((below(first), below(last)), (200.0, 25.0));
         assert_eq!(last.recording.len(), family.recording.len());
+        // What may be the hold may be it here, too.
+        assert_eq!(last.hold, family.hold);
         let force = |family: &super::FrictionFamily| -> Vec<f64> {
             family.recording.channel("force").unwrap().values.clone()
         };
