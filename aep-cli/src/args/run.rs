@@ -49,7 +49,8 @@ struct ThresholdArgs {
     /// Share of all that is explained that a further effect must explain, 0 to 1 (sets that differ by less are as good)
     #[arg(long, value_name = "SHARE", default_value_t = Thresholds::default().share, allow_negative_numbers = true, value_parser = share)]
     share: f64,
-    /// A model is complete where it errs up to this many times as much as the sensors make it
+    /// A model is complete where it errs up to this many times as much as the sensors make it, and lacks a force of no more than so
+    /// many of its 95 % bands
     #[arg(long, value_name = "FACTOR", default_value_t = Thresholds::default().complete, allow_negative_numbers = true, value_parser = positive)]
     complete: f64,
     /// A model is incomplete where it errs this many times as much as the sensors make it at some place or some time

@@ -21,11 +21,6 @@ pub struct ReversalDecay;
 
 /// So far from the last reversal that nothing of it is left.
 const FAR: f64 = f64::MAX;
-/// What is over within a count of the position nobody sees: a contact that gives less than that would do as much.
-fn within_a_count(found: &AsFound<'_>) -> Option<Refused> {
-    found.within((1, "l"), found.count, "it is over within a count of the position")
-}
-
 static FORMS: [&dyn Effect; 2] = [&hysteresis::Hysteresis, &bouc_wen::BoucWen];
 
 static ABOUT: About = About {
@@ -40,6 +35,11 @@ static ABOUT: About = About {
     shows: "(residual x sign of velocity) against the distance since the last reversal, the same at every speed",
     reference: "empirical, for quadrant glitches of feed drives as in K. Erkorkmaz, Y. Altintas, Int. J. Machine Tools and Manufacture 41, 2001",
 };
+
+/// What is over within a count of the position nobody sees: a contact that gives less than that would do as much.
+fn within_a_count(found: &AsFound<'_>) -> Option<Refused> {
+    found.within((1, "l"), found.count, "it is over within a count of the position")
+}
 
 impl Effect for ReversalDecay {
     fn about(&self) -> &'static About {
