@@ -4,16 +4,16 @@ use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use super::as_read::{Other, Reading};
 use super::astray::{elsewhere, seen};
 use super::beam::{Climb, Search, Tell};
 use super::fit::{Fitter, best_setting};
 use super::found::{Found, IN_FULL};
 use super::node::Node;
-use super::reading;
+use super::reading::{Other, Reading};
 use super::refused::as_read;
 use super::report::Report;
 use super::sought::{PAIR, Sought};
+use super::which_reading;
 use crate::family::{Fitted, OtherReading};
 use crate::fit;
 use crate::report::{Decision, Discovery, Remark};
@@ -90,7 +90,7 @@ impl Pursuit<'_> {
     fn is_better_in(&self, other: &Reading<'_>, stop: &(dyn Fn() -> bool + Sync)) -> bool {
         let (top, effects) = self.climb.top();
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
-        effects > 0 && !self.is_complete() && !stop() && reading::is_better(top, &fitter)
+        effects > 0 && !self.is_complete() && !stop() && which_reading::is_better(top, &fitter)
     }
 }
 
@@ -157,7 +157,7 @@ impl<'a> Begun<'a> {
         };
         let better = thresholds.in_part(there.reading.searched().share()).better;
         let preferred = |there: (&Node, usize), here: (&Node, usize)| {
-            reading::nats(reading.searched(), there, here, better)
+            which_reading::nats(reading.searched(), there, here, better)
         };
         let turned = match (here.is_of_reading(), there.is_of_reading()) {
             (false, true) => false,
@@ -168,7 +168,7 @@ impl<'a> Begun<'a> {
         let other = second.reading;
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);
         let less = |(top, added): (&Node, &[usize])| {
-            if stop() { None } else { reading::with_less(top, added, &fitter, better) }
+            if stop() { None } else { which_reading::with_less(top, added, &fitter, better) }
         };
         // What is found there, where that is to be preferred.
         let there = |second: Pursuit<'a>, led: Node, top: (&Node, usize)| {
@@ -367,7 +367,7 @@ impl<'a> Run<'a> {
             let setting = best_setting(ahead, &without);
             let node = fitter.refit(without.clone(), setting, IN_FULL);
             let better = self.thresholds.in_part(ahead.share()).better;
-            let nats = reading::nats(ahead, (&node, effects - late), (top, effects), better);
+            let nats = which_reading::nats(ahead, (&node, effects - late), (top, effects), better);
             let gain = nats - if late == 0 { better } else { 0.0 };
             // More takes away what acted.
             if best.as_ref().is_some_and(|(_, before)| gain <= *before) {

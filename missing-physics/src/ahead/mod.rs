@@ -5,7 +5,6 @@
 //! which of two is better, [`screen`] which candidates are worth a fit; [`discover`] searches sets of effects. A family
 //! that says at once what a whole recording should be is seen through its [`Residuals`].
 
-mod as_read;
 mod astray;
 pub mod autoregression;
 mod beam;
@@ -32,11 +31,12 @@ mod sought;
 pub mod statistics;
 #[cfg(test)]
 pub(crate) mod testing;
+mod which_reading;
 pub mod whitening;
 
-pub use as_read::Reading;
 pub use beam::ByHand;
 pub use looks::discover;
+pub use reading::Reading;
 pub use residuals::Residuals;
 
 pub use crate::family::{Ahead, Columns, Rival, Trial, trials};

@@ -1,102 +1,83 @@
-//! Which of two readings of a recording stands: the one in which the best model with one effect predicts better.
-//!
-//! What the simplest model lacks can hide how an input acts between samples. And a wrong reading (an input that was
-//! held taken as sampled, or the other way round) takes an effect of its own to make up for it, so that fewer effects
-//! count for it where both predict alike.
-
-use std::cmp::Ordering;
+//! A recording as it is read: what is searched of it, and what its input does between samples.
 
 use super::Ahead;
-use super::fit::Fitter;
-use super::foretold::is_foretold;
+use super::compare::Comparison;
+use super::fit::evaluated;
+use super::found::Found;
 use super::node::Node;
+use super::residuals::Residuals;
+use crate::family::{Fitted, ModelFamily};
 
-/// Steps of a fit in the other reading.
-const STEPS: usize = 6;
+/// A recording as it is read: how its input acts between samples.
+pub struct Reading<'a> {
+    pub(super) family: &'a dyn ModelFamily,
+    pub(super) whole: Box<dyn Ahead + 'a>,
+    pub(super) part: Option<Box<dyn Ahead + 'a>>,
+    /// Whether the errors are residuals.
+    pub(super) residuals: bool,
+}
 
-/// By how many nats the best model of one reading is to be preferred to that of the other, each with its number of
-/// effects, as `ahead` sees them: one with fewer is allowed to lose `better`, and what its errors foretell themselves.
-pub fn nats(ahead: &dyn Ahead, here: (&Node, usize), there: (&Node, usize), better: f64) -> f64 {
-    let ((here, effects), (there, others)) = (here, there);
-    let nats = gain(there, here);
-    let is_foretold = |from, to, nats| is_foretold(ahead, from, to, nats, better);
-    match effects.cmp(&others) {
-        Ordering::Less if is_foretold(here, there, -nats) => better,
-        Ordering::Less => nats + better,
-        Ordering::Equal => nats,
-        Ordering::Greater if is_foretold(there, here, nats) => -better,
-        Ordering::Greater => nats - better,
+impl<'a> Reading<'a> {
+    /// That of a family that predicts one sample ahead.
+    pub fn of(family: &'a dyn ModelFamily) -> Option<Self> {
+        let (whole, part) = (family.ahead()?, family.ahead_in_part());
+        Some(Self { family, whole, part, residuals: false })
+    }
+
+    /// The same, more of it searched.
+    pub(super) fn longer(family: &'a dyn ModelFamily) -> Option<Self> {
+        let (whole, part) = (family.ahead()?, family.ahead_in_longer_part());
+        Some(Self { family, whole, part, residuals: false })
+    }
+
+    /// That of a family that only gives residuals, whose noise the residual of `base` shows.
+    pub fn of_residuals(family: &'a dyn ModelFamily, base: &Fitted) -> Self {
+        Self { family, whole: Box::new(Residuals::new(family, base)), part: None, residuals: true }
+    }
+
+    /// What is searched.
+    pub(super) fn searched(&self) -> &dyn Ahead {
+        self.asked(true)
+    }
+
+    /// All of it, or what is searched.
+    pub(super) fn asked(&self, on_part: bool) -> &dyn Ahead {
+        self.part.as_deref().filter(|_| on_part).unwrap_or(&*self.whole)
+    }
+
+    /// The same, its errors judged by what an autoregression leaves of them.
+    pub(super) fn coloured(&self) -> Option<Reading<'_>> {
+        let part = self.part.as_ref().map(|part| part.coloured());
+        let whole = self.whole.coloured()?;
+        let part = part.flatten();
+        Some(Reading { family: self.family, whole, part, residuals: self.residuals })
+    }
+
+    /// Whether residuals as they are fall by what was found in whitened ones: noise of a colour that nobody stated leaves
+    /// no model complete, and hides in them what whitened ones show.
+    pub(super) fn bears_out(&self, found: &Found) -> bool {
+        let Some(top) = found.rungs.last().filter(|_| self.residuals) else { return false };
+        let as_it_is = |node: &Node| evaluated(&*self.whole, node.model.clone(), 0);
+        let comparison = Comparison::new(self.family, &*self.whole);
+        comparison.compare(&as_it_is(&found.base), &as_it_is(top)).nats > 0.0
     }
 }
 
-/// A model without one of the effects that were `added` to it, where the other reading, whose `fitter` this is, does as
-/// well without.
-pub fn with_less(top: &Node, added: &[usize], fitter: &Fitter<'_>, better: f64) -> Option<Node> {
-    if added.is_empty() {
-        return None;
-    }
-    let all = fitter.refit(top.model.clone(), top.setting, STEPS);
-    let without = added.iter().map(|term| {
-        let without = fitter.refit(all.model.without(fitter.family(), *term), all.setting, STEPS);
-        (gain(&without, top), without)
-    });
-    let best = without.min_by(|a, b| a.0.total_cmp(&b.0));
-    best.filter(|(gain, _)| *gain < better).map(|(_, without)| without)
+/// The other way to read a recording.
+pub(super) struct Other<'a> {
+    pub(super) reading: Reading<'a>,
+    /// By how many nats the simplest model prefers the first, and whether that decides until effects say otherwise.
+    pub(super) nats: f64,
+    pub(super) decided: bool,
 }
 
-/// Whether a model predicts better in the other reading, whose `fitter` this is.
-pub fn is_better(model: &Node, fitter: &Fitter<'_>) -> bool {
-    gain(model, &fitter.refit(model.model.clone(), model.setting, STEPS)) > 0.0
-}
-
-/// Gain in log-likelihood from one model to another, each with errors of its own size.
-fn gain(from: &Node, to: &Node) -> f64 {
-    to.errors.len() as f64 / to.correlation() * (from.deviation / to.deviation).ln()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ahead::fit;
-    use crate::ahead::testing::{BEAT, Plant, WAVE};
-
-    fn model(plant: &Plant, terms: &[(usize, &[f64])]) -> Node {
-        fit::evaluated(plant, Plant::model(terms), 0)
+impl Other<'_> {
+    pub(super) fn coloured(&self) -> Option<Other<'_>> {
+        Some(Other { reading: self.reading.coloured()?, ..*self })
     }
 
-    #[test]
-    fn the_better_prediction_is_preferred_and_one_effect_less_may_cost_what_one_must_gain() {
-        let plant = Plant::new(1, &[(WAVE, &[0.05])]);
-        let (good, poor) = (model(&plant, &[(WAVE, &[0.05])]), model(&plant, &[]));
-        let alike = nats(&plant, (&good, 1), (&poor, 1), 20.0);
-        assert!(alike > 20.0, "{alike}");
-        assert_eq!(nats(&plant, (&poor, 1), (&good, 1), 20.0), -gain(&good, &poor).abs());
-        assert_eq!(nats(&plant, (&good, 0), (&poor, 1), 20.0), alike + 20.0);
-        assert_eq!(nats(&plant, (&good, 2), (&poor, 1), 20.0), alike - 20.0);
-        assert_eq!(nats(&plant, (&good, 1), (&good, 2), 20.0), 20.0);
-    }
-
-    #[test]
-    fn a_model_is_better_in_the_reading_that_it_is_true_of() {
-        let wave: (usize, &[f64]) = (WAVE, &[0.05]);
-        let (with, without) = (Plant::new(2, &[wave, (BEAT, &[0.03])]), Plant::new(2, &[wave]));
-        let is_better = |model: &Node, other: &Plant| is_better(model, &Fitter::new(other, other));
-        assert!(is_better(&model(&with, &[wave]), &without));
-        assert!(!is_better(&model(&without, &[wave]), &with));
-    }
-
-    #[test]
-    fn a_reading_in_which_an_effect_does_nothing_needs_less() {
-        let wave: (usize, &[f64]) = (WAVE, &[0.05]);
-        let both = Plant::new(2, &[wave, (BEAT, &[0.03])]);
-        let top = model(&both, &[wave, (BEAT, &[0.03])]);
-        let less = |added: &[usize], other: &Plant| {
-            with_less(&top, added, &Fitter::new(other, other), 20.0)
-        };
-        // The same noise, and no beat in it.
-        let other = Plant::new(2, &[wave]);
-        assert_eq!(less(&[WAVE, BEAT], &other).unwrap().effects(&other), [WAVE]);
-        assert!(less(&[WAVE, BEAT], &both).is_none());
-        assert!(less(&[], &other).is_none());
+    /// The same, more of it searched.
+    pub(super) fn longer(&self) -> Option<Other<'_>> {
+        Some(Other { reading: Reading::longer(self.reading.family)?, ..*self })
     }
 }

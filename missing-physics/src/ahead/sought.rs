@@ -1,9 +1,9 @@
 //! What was found in a reading, and how it compares with what another look found.
 
-use super::as_read::Reading;
 use super::compare::Comparison;
 use super::fit::{Fitter, best_setting};
 use super::found::{Found, IN_FULL};
+use super::reading::Reading;
 use super::refused::refused;
 use crate::report::{Decision, Remark};
 use crate::task::Thresholds;
