@@ -2,7 +2,7 @@
 
 use super::gain::Gain;
 use super::strips::Strip;
-use super::{LATE_STEPS, Predictor, STEP, STEP_OF_TWO, VECTOR};
+use super::{LATE_STEPS, MOST_STEPS, MOST_STEPS_OF_TWO, Predictor, STEP, STEP_OF_TWO, VECTOR};
 use crate::effects::Slot;
 use crate::model::Model;
 use crate::simd::{limited, vectorised};
@@ -121,7 +121,8 @@ impl Predictor {
         let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
         let at_rest: Vec<&Gain> =
             trials.iter().map(|(_, s)| self.gain_of(if *s < rungs { *s } else { 0 })).collect();
-        let step = if two { STEP_OF_TWO } else { STEP };
+        let (step, most) = if two { (STEP_OF_TWO, MOST_STEPS_OF_TWO) } else { (STEP, MOST_STEPS) };
+        let step = step.max(self.interval / most);
         let step = if models[0].is_late() { step.min(self.interval / LATE_STEPS) } else { step };
         let input = Input::new(&self.time, &self.force, self.hold).with_max_step(step);
         let all = models.len();

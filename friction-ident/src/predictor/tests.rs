@@ -1,3 +1,5 @@
+use std::f64::consts::PI;
+
 use missing_physics::Channel;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -123,6 +125,21 @@ fn a_step_a_sample_follows_a_force_that_changes_within_it() {
         let (setting, errors) = best(&predictor, &table());
         let ratio = rms(&errors) / predictor.budget();
         assert!(setting == 0 && ratio < 0.9, "{hold:?}: {ratio} at {setting}");
+    }
+}
+
+#[test]
+fn a_few_steps_a_sample_follow_a_slow_recording() {
+    // Twenty samples a second, under a force that is as slow; with a spring, too, on which the mass swings in nine samples.
+    let sprung = table().with("spring", &[("k", MASS * (2.0 * PI / 0.45).powi(2))]).unwrap();
+    let slow = |t: f64| 24.0 * t.sin() + 12.0 * (2.6 * t + 1.0).sin();
+    for (hold, model) in
+        [(Hold::ZeroOrder, table()), (Hold::Sampled, table()), (Hold::Sampled, sprung)]
+    {
+        let predictor = predictor(&commanded_every(0.05, &model, hold, QUIET, slow));
+        // No more than one and a half times what the counts make.
+        let left = rms(&best(&predictor, &model).1);
+        assert!(left < 1.5 * COUNT / 12f64.sqrt(), "{hold:?}: {left:.3e}");
     }
 }
 

@@ -224,17 +224,17 @@ impl<'a> Search<'a> {
         }
         let mut best = self.usual_instead(&climb, best);
         let (mut simplified, mut rival, mut unknown) = (BTreeSet::new(), None, None);
-        let mut asks = true;
         loop {
             let (needed, costs) = self.prune(&climb, best);
-            // What took the place of one effect may leave another one to a simpler one, too; what leads back does not.
-            asks &= simplified.len() < ROUNDS && simplified.insert(needed.model.terms.clone());
-            if asks {
-                if let Some(simpler) = self.simplified(&climb, &needed, &costs) {
-                    best = simpler;
-                    continue;
-                }
-                asks = false;
+            // What took the place of one effect, or is left of a set that another one has gone from, may leave an effect to a
+            // simpler one, too; what leads back does not.
+            if rival.is_none()
+                && simplified.len() < ROUNDS
+                && simplified.insert(needed.model.terms.clone())
+                && let Some(simpler) = self.simplified(&mut climb, &needed, &costs)
+            {
+                best = simpler;
+                continue;
             }
             let last = self.plainest(needed, &costs);
             let other = self.with_other_law(&climb, &last);

@@ -18,7 +18,12 @@ use crate::report::{Outcome, Reason};
 impl Search<'_> {
     /// The set with simpler effects in the place of others, where those do as much; nothing where none does. `costs` has the
     /// models without each.
-    pub(super) fn simplified(&mut self, climb: &Climb, set: &Node, costs: &Costs) -> Option<Node> {
+    pub(super) fn simplified(
+        &mut self,
+        climb: &mut Climb,
+        set: &Node,
+        costs: &Costs,
+    ) -> Option<Node> {
         let mut best = None;
         for (term, cost, without) in costs {
             // Beside what took the place of another one the model without it is another.
@@ -47,10 +52,10 @@ impl Search<'_> {
     }
 
     /// The set `best` with an effect of fewer than `below` parameters beside a model without one of its effects, which it
-    /// loses `cost` nats without.
+    /// loses `cost` nats without. What is refused there still shows how much as few effects can foretell.
     pub(super) fn in_the_place_of(
         &mut self,
-        climb: &Climb,
+        climb: &mut Climb,
         best: &Node,
         cost: f64,
         without: &Node,
@@ -88,7 +93,8 @@ impl Search<'_> {
         });
         for other in others.collect::<Option<Vec<Node>>>()? {
             let by = self.comparison.compare(best, &other);
-            let is_one = refused(self.family, self.ahead, &climb.base, &other).is_none();
+            let refusal = refused(self.family, self.ahead, &climb.base, &other);
+            let is_one = refusal.is_none();
             let leaves_more = self.is_complete(best) && !self.is_complete(&other);
             let fewer = self.parameters(&other) < self.parameters(best);
             let needed = if fewer { -clear } else { 0.0 };
@@ -102,7 +108,9 @@ impl Search<'_> {
                 }
                 return Some(other);
             }
-            if is_one && !leaves_more {
+            if let Some((_, refusal)) = refusal {
+                climb.refused.push((other, refusal));
+            } else if !leaves_more {
                 self.twins.push(other);
             }
         }

@@ -23,7 +23,7 @@ fn beside_usual(
         (found[k].0, search.comparison.compare(&without, &set), without)
     });
     let costs: Costs = costs.collect();
-    let simpler = search.simplified(&climb(&plant, Vec::new()), &set, &costs);
+    let simpler = search.simplified(&mut climb(&plant, Vec::new()), &set, &costs);
     simpler.unwrap_or(set).effects(&plant)
 }
 
@@ -68,8 +68,8 @@ fn what_was_asked_beside_a_usual_effect_is_an_alternative_though_it_is_two() {
     let mut search = search(&plant, Thresholds { complete: 1e9, ..narrow() });
     let gain = search.comparison.compare(&base, &tone);
     let costs = || vec![(TONE, gain, base.clone())];
-    let climb = climb(&plant, vec![vec![tone.clone()]]);
-    assert!(search.simplified(&climb, &tone, &costs()).is_none());
+    let mut climb = climb(&plant, vec![vec![tone.clone()]]);
+    assert!(search.simplified(&mut climb, &tone, &costs()).is_none());
     let found = search.conclude(climb, &tone, (costs(), 0.0), Screened::default(), None);
     let (last, others) = found.sets[1].split_first().unwrap();
     assert_eq!(*last, (vec![TONE], 0.0));
@@ -86,11 +86,27 @@ fn the_most_promising_one_is_fitted_however_little_of_what_is_lost_it_promises()
     let (best, without) = (node(&plant, &[push, (TONE, &[0.01, 5.0])]), node(&plant, &[push]));
     for (cost, most) in [(100.0, 3), (1e9, 1)] {
         let mut search = search(&plant, Thresholds { beam: 3, ..narrow() });
-        let climb = climb(&plant, Vec::new());
-        let other = search.in_the_place_of(&climb, &best, cost, &without, 2).unwrap();
+        let mut climb = climb(&plant, Vec::new());
+        let other = search.in_the_place_of(&mut climb, &best, cost, &without, 2).unwrap();
         assert_eq!(other.effects(&plant), [PUSH, BEAT]);
         assert!((1..=most).contains(&search.decisions.len()), "{}", search.decisions.len());
     }
+}
+
+#[test]
+fn what_does_more_in_the_place_of_an_effect_but_is_refused_takes_that_back() {
+    let push: (usize, &[f64]) = (PUSH, &[0.05]);
+    let mut plant = Plant::new(6, &[push, (BEAT, &[0.05])]);
+    plant.none = Some(BEAT);
+    let (best, without) = (node(&plant, &[push, (TONE, &[0.01, 5.0])]), node(&plant, &[push]));
+    let mut search = search(&plant, Thresholds { beam: 1, ..narrow() });
+    let mut climb = climb(&plant, Vec::new());
+    assert!(search.in_the_place_of(&mut climb, &best, 1e9, &without, 2).is_none());
+    assert_eq!(climb.refused[0].0.effects(&plant), [PUSH, BEAT]);
+    search.thresholds.complete = 0.5;
+    let (left, told) = search.outdone(&climb, &best).unwrap();
+    assert_eq!(left.effects(&plant), [PUSH]);
+    assert!(matches!(told, Remains::Outdone { nats, .. } if nats > 20.0), "{told:?}");
 }
 
 #[test]
