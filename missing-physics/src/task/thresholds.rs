@@ -36,7 +36,7 @@ impl Thresholds {
         self.better.max(self.share * nats)
     }
 
-    /// Largest chance that its gain recurs so often, of each of several effects in a model that is not complete: that
+    /// Largest chance that its gain recurs so often, of each effect in a model that is not complete: that
     /// of a search, of each candidate that is fitted beside a model (C. E. Bonferroni).
     pub fn recurs(&self) -> f64 {
         self.chance / self.fitted.max(1) as f64

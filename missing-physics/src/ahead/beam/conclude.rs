@@ -78,7 +78,10 @@ impl Search<'_> {
                 // Each set without one is as good: the one of the fewest parameters stands.
                 idle.sort_by_key(|(k, _)| std::cmp::Reverse(self.parameters(&costs[*k].2)));
             }
-            let Some((goes, because)) = idle.pop().filter(|_| costs.len() > 1) else {
+            // What a single one gains has been asked, but not whether it does so again and again.
+            let asked =
+                |(_, why): &(usize, Reason)| costs.len() > 1 || *why == Reason::NotRecurring;
+            let Some((goes, because)) = idle.pop().filter(asked) else {
                 return (best, costs);
             };
             let (term, cost, without) = costs.swap_remove(goes);
@@ -126,7 +129,7 @@ impl Search<'_> {
         best.map_or(left, |(_, set)| set.clone())
     }
 
-    /// Why an effect of a set of several is not needed, if so: what the set without it loses, and that one.
+    /// Why an effect of a set is not needed, if so: what the set without it loses, and that one.
     pub(super) fn why_goes(&self, set: &Node, cost: Difference, without: &Node) -> Option<Reason> {
         // Errors of an incomplete model are its own, and what lowers them counts only as far as it does so again and again
         // (Q. H. Vuong, 1989, and by ranks).

@@ -124,6 +124,27 @@ fn beside_an_incomplete_model_an_effect_must_gain_again_and_again() {
 }
 
 #[test]
+fn a_single_effect_of_an_incomplete_model_goes_where_it_gains_in_one_stretch() {
+    let plant = Plant::new(3, &[]);
+    // Errors of the base against those of the effect: larger everywhere, or in an eighth of the recording alone.
+    for ([there, elsewhere], kept) in [([1.2, 1.2], vec![WAVE]), ([2.0, 0.97], vec![])] {
+        let mut search = search(&plant, narrow());
+        let mut climb = climb(&plant, Vec::new());
+        let eighth = climb.base.errors.len() / 8;
+        let errors = climb.base.errors.iter().enumerate();
+        let errors = errors.map(|(k, error)| error * if k < eighth { there } else { elsewhere });
+        climb.base = Node::new(&plant, Plant::model(&[]), 0, errors.collect());
+        let mut set = node(&plant, &[(WAVE, &[1e-5])]);
+        (set.scale, climb.base.scale) = (1.5 * plant.budget(), 2.0 * plant.budget());
+        let (last, costs) = search.prune(&climb, set);
+        let told: Vec<_> = costs.iter().map(|(_, cost, _)| cost).collect();
+        assert_eq!(last.effects(&plant), kept, "{told:?}");
+        let because = search.decisions.first().and_then(|d| d.because.clone());
+        assert_eq!(because, kept.is_empty().then_some(Reason::NotRecurring));
+    }
+}
+
+#[test]
 fn a_usual_effect_that_came_with_an_alternative_need_not_be_there() {
     let mut plant = Plant::new(9, &[(WAVE, &[0.05])]);
     let alternatives = |plant: &Plant| {
