@@ -37,10 +37,11 @@ use crate::model::Model;
 use gain::{Gain, gains};
 use strips::{Strip, teams};
 
-/// Longest step of the simulation, s, and that with a second body;
+/// Longest step of the simulation, s, and that with a second body.
 const STEP: f64 = 1.25e-3;
 const STEP_OF_TWO: f64 = 8e-4;
-/// longer where that would be more steps from sample to sample: what moves faster than these are apart, nobody saw.
+/// Most steps from sample to sample, and that with a second body; of slow samples a step is longer. What moves faster than they
+/// are apart nobody saw.
 const MOST_STEPS: f64 = 4.0;
 const MOST_STEPS_OF_TWO: f64 = 8.0;
 /// Samples of a search that follow each other faster are averaged: a step is no shorter.

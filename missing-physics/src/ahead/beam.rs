@@ -62,7 +62,8 @@ pub struct Climb {
     ranking: Vec<Ranked>,
     /// What the candidates promise beside the best set of each size.
     screened: Vec<(Node, Screened)>,
-    /// Sets that predict better than what they were grown from, but are not what they are called, and why.
+    /// Sets that predict better than what they were grown from, or were asked in the place of an effect, but are not what they are
+    /// called, and why.
     refused: Vec<(Node, Refusal)>,
     /// Those of the last size that are extended.
     beam: Vec<Node>,
