@@ -13,6 +13,10 @@ pub fn reason(decision: &Decision) -> Option<String> {
             "by its standard error chance gains as much, and the model with it is incomplete"
                 .to_owned()
         }
+        Reason::AtRest => {
+            "it gains at rest and next to it, where a contact holds, not where the axis moves fast"
+                .to_owned()
+        }
         Reason::Foretold => "the errors before each sample foretell as much".to_owned(),
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),

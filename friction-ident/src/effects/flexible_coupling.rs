@@ -85,6 +85,11 @@ impl Effect for FlexibleCoupling {
         &["zeta"]
     }
 
+    /// Both bodies answer the force and swing while the axis slides.
+    fn acts_in_motion(&self) -> bool {
+        true
+    }
+
     fn most(&self, parameter: &str, values: &[f64], mass: f64) -> Option<f64> {
         most(parameter, values, mass)
     }

@@ -158,6 +158,11 @@ pub trait Effect: Sync + Send {
         &[]
     }
 
+    /// Whether it acts wherever the axis moves, at any speed: what would gain next to rest alone is a contact.
+    fn acts_in_motion(&self) -> bool {
+        false
+    }
+
     /// The usual effect that this one is another law of, if any.
     fn law_of(&self) -> Option<&'static str> {
         None

@@ -48,6 +48,8 @@ pub(super) struct OneAhead {
     instants: Vec<(f64, usize)>,
     /// What each of them is worth.
     worth: Vec<f64>,
+    /// Whether the axis is faster there than at half of them.
+    fast: Vec<bool>,
     /// The responses that were asked for last.
     responses: Arc<Mutex<Vec<Responses>>>,
     /// A few pieces of it.
@@ -93,7 +95,8 @@ impl OneAhead {
 
     fn whole(predictor: Predictor) -> Self {
         let (instants, worth) = (predictor.instants(), predictor.worth());
-        Self { predictor, instants, worth, responses: Arc::default(), part: None }
+        let fast = predictor.counted_and_fast();
+        Self { predictor, instants, worth, fast, responses: Arc::default(), part: None }
     }
 
     /// Responses to periodic disturbances: they do not depend on the model, so that those of the last settings are
@@ -233,6 +236,10 @@ impl Ahead for View<'_> {
 
     fn worth(&self) -> Option<&[f64]> {
         Some(&self.ahead.worth)
+    }
+
+    fn in_motion(&self, term: usize) -> Option<&[bool]> {
+        self.family.effect(term)?.acts_in_motion().then_some(&self.ahead.fast)
     }
 
     fn faults(&self) -> Option<Fault> {

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::Predictor;
 use super::gain::{Gain, Motion};
+use crate::signal::quantile;
 use crate::simd::{sin_cos_of_turns, vectorised};
 
 /// Samples on either side over which an axis must have moved not to be at rest.
@@ -144,6 +145,14 @@ impl Predictor {
     pub fn counted_and_moving(&self) -> Vec<bool> {
         let moving = self.moving();
         self.counted.iter().map(|k| moving[*k]).collect()
+    }
+
+    /// Whether the axis is faster at each sample that counts than at half of them; where it rests for most of the time, whether
+    /// it moves.
+    pub fn counted_and_fast(&self) -> Vec<bool> {
+        let speeds: Vec<f64> = self.counted.iter().map(|k| self.speed_around(*k)).collect();
+        let median = quantile(&speeds, 0.5);
+        speeds.into_iter().map(|speed| speed > median).collect()
     }
 
     /// Whether the axis moves in the interval before a sample.

@@ -402,6 +402,23 @@ fn the_response_to_a_gain_is_what_a_simulation_of_it_changes() {
 }
 
 #[test]
+fn half_of_a_motion_is_fast_and_of_one_that_rests_for_longer_what_moves() {
+    let moves =
+        |share: f64| move |t: f64| if t % 1.0 < share { 24.0 * (40.0 * t).sin() } else { 0.0 };
+    for (share, expected) in [(1.0, 0.5), (0.3, 0.3)] {
+        let p = predictor(&commanded(&table(), Hold::ZeroOrder, QUIET, moves(share)));
+        let fast = p.counted_and_fast();
+        let of = |is: bool| {
+            let those = p.counted.iter().zip(&fast).filter(move |(_, fast)| **fast == is);
+            those.map(|(k, _)| p.speed_around(*k))
+        };
+        let found = of(true).count() as f64 / fast.len() as f64;
+        assert!((found - expected).abs() < 0.03, "{found}");
+        assert!(of(true).fold(f64::MAX, f64::min) > of(false).fold(0.0, f64::max));
+    }
+}
+
+#[test]
 fn a_surrogate_leaves_its_model_the_same_errors_in_another_order() {
     let hidden = table().with("stribeck", &[("dF", 3.0)]).unwrap();
     let predictor = predictor(&recording(&hidden, Hold::ZeroOrder, QUIET));

@@ -117,6 +117,7 @@ pub struct Plant {
     pub shares: bool,
     /// What each error is worth, if not 1.
     pub worth: Option<Vec<f64>>,
+    pub in_motion: Option<Vec<bool>>,
 }
 
 fn about(name: &str, lower: f64, more: Option<TermParameter>) -> About {
@@ -211,6 +212,7 @@ impl Plant {
             lacks: None,
             shares: true,
             worth: None,
+            in_motion: None,
         }
     }
 
@@ -263,6 +265,9 @@ impl Ahead for Plant {
     }
     fn worth(&self) -> Option<&[f64]> {
         self.worth.as_deref()
+    }
+    fn in_motion(&self, _term: usize) -> Option<&[bool]> {
+        self.in_motion.as_deref()
     }
     fn errors(&self, models: &[(Fitted, usize)]) -> Vec<Vec<f64>> {
         let one = |(model, setting): &(Fitted, usize)| {

@@ -41,6 +41,12 @@ pub trait Ahead: Sync {
         None
     }
 
+    /// The errors of the half in which the system moves faster, for a term that acts wherever it moves: what gains at rest
+    /// alone holds there, and is something else. Nothing for other terms.
+    fn in_motion(&self, _term: usize) -> Option<&[bool]> {
+        None
+    }
+
     /// Share of the recording's errors that these are: where only a part of it is searched an effect gains as much less.
     fn share(&self) -> f64 {
         1.0

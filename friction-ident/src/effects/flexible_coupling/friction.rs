@@ -119,6 +119,11 @@ impl Effect for WithFriction {
         &["zeta"]
     }
 
+    /// Both bodies answer the force and swing while the axis slides.
+    fn acts_in_motion(&self) -> bool {
+        true
+    }
+
     fn most(&self, parameter: &str, values: &[f64], mass: f64) -> Option<f64> {
         super::most(parameter, values, mass)
     }

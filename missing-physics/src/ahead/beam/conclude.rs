@@ -71,16 +71,19 @@ impl Search<'_> {
             });
             let mut costs: Costs = each.collect();
             costs.sort_by(|a, b| b.1.nats.total_cmp(&a.1.nats));
-            let whys = costs.iter().map(|(_, cost, without)| self.why_goes(&best, *cost, without));
+            let whys = costs
+                .iter()
+                .map(|(term, cost, without)| self.why_goes(&best, *term, *cost, without));
             let mut idle: Vec<_> =
                 whys.enumerate().filter_map(|(k, why)| Some((k, why?))).collect();
             if idle.iter().all(|(_, why)| *why == Reason::AsGoodWithout) {
                 // Each set without one is as good: the one of the fewest parameters stands.
                 idle.sort_by_key(|(k, _)| std::cmp::Reverse(self.parameters(&costs[*k].2)));
             }
-            // What a single one gains has been asked, but not whether it does so again and again.
-            let asked =
-                |(_, why): &(usize, Reason)| costs.len() > 1 || *why == Reason::NotRecurring;
+            // What a single one gains has been asked, but not when it does so.
+            let asked = |(_, why): &(usize, Reason)| {
+                costs.len() > 1 || matches!(why, Reason::NotRecurring | Reason::AtRest)
+            };
             let Some((goes, because)) = idle.pop().filter(asked) else {
                 return (best, costs);
             };
@@ -129,8 +132,15 @@ impl Search<'_> {
         best.map_or(left, |(_, set)| set.clone())
     }
 
-    /// Why an effect of a set is not needed, if so: what the set without it loses, and that one.
-    pub(super) fn why_goes(&self, set: &Node, cost: Difference, without: &Node) -> Option<Reason> {
+    /// Why a term of a set is not needed, if so: what the set without it loses, and that one.
+    pub(super) fn why_goes(
+        &self,
+        set: &Node,
+        term: usize,
+        cost: Difference,
+        without: &Node,
+    ) -> Option<Reason> {
+        let in_motion = self.ahead.in_motion(term);
         // Errors of an incomplete model are its own, and what lowers them counts only as far as it does so again and again
         // (Q. H. Vuong, 1989, and by ranks).
         let misfit = self.ahead.has_shares() && self.budget(set) > self.thresholds.complete;
@@ -140,6 +150,9 @@ impl Search<'_> {
             Some(Reason::ErrorNoLower)
         } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
+        } else if in_motion.is_some_and(|there| self.comparison.lies_elsewhere(without, set, there))
+        {
+            Some(Reason::AtRest)
         } else if is_foretold(self.ahead, without, set, cost.nats, self.thresholds.better) {
             Some(Reason::Foretold)
         } else {

@@ -112,7 +112,7 @@ fn beside_an_incomplete_model_an_effect_must_gain_again_and_again() {
     let (mut set, mut without) = (node(&plant, &[]), node(&plant, &[]));
     let mut why = |times: f64, fewer: f64, nats: f64, error: f64, ranks: f64| {
         (set.scale, without.scale) = (times * plant.budget(), fewer * plant.budget());
-        search.why_goes(&set, Difference { nats, error, ranks }, &without)
+        search.why_goes(&set, WAVE, Difference { nats, error, ranks }, &without)
     };
     assert_eq!(why(1.5, 2.0, 1000.0, 380.0, 0.0), None);
     assert_eq!(why(1.5, 2.0, 1000.0, 400.0, 2.5), Some(Reason::NotRecurring));
@@ -141,6 +141,28 @@ fn a_single_effect_of_an_incomplete_model_goes_where_it_gains_in_one_stretch() {
         assert_eq!(last.effects(&plant), kept, "{told:?}");
         let because = search.decisions.first().and_then(|d| d.because.clone());
         assert_eq!(because, kept.is_empty().then_some(Reason::NotRecurring));
+    }
+}
+
+#[test]
+fn what_acts_wherever_a_system_moves_gains_where_it_moves_fast() {
+    let mut plant = Plant::new(3, &[]);
+    let half = plant.instants().len() / 2;
+    plant.in_motion = Some((0..plant.instants().len()).map(|k| k >= half).collect());
+    // Errors of the base against those of the effect, before it moves fast and then.
+    for ([before, then], kept) in
+        [([1.2, 1.2], true), ([1.0, 1.3], true), ([1.3, 1.25], true), ([1.3, 1.1], false)]
+    {
+        let mut search = search(&plant, narrow());
+        let mut climb = climb(&plant, Vec::new());
+        let errors = climb.base.errors.iter().enumerate();
+        let errors = errors.map(|(k, error)| error * if k < half { before } else { then });
+        climb.base = Node::new(&plant, Plant::model(&[]), 0, errors.collect());
+        let (last, _) = search.prune(&climb, node(&plant, &[(WAVE, &[1e-5])]));
+        assert_eq!(last.effects(&plant), if kept { vec![WAVE] } else { vec![] }, "{before} {then}");
+        let because = search.decisions.first().and_then(|d| d.because.clone());
+        assert_eq!(because, (!kept).then_some(Reason::AtRest));
+        assert_eq!(search.none.contains(&WAVE), !kept);
     }
 }
 
