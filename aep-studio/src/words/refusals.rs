@@ -14,7 +14,7 @@ pub fn reason(decision: &Decision) -> Option<String> {
                 .to_owned()
         }
         Reason::AtRest => {
-            "it gains at rest and next to it, where a contact holds, not where the axis moves fast"
+            "it gains next to rest, where a contact holds, and too little where the axis moves fast"
                 .to_owned()
         }
         Reason::Foretold => "the errors before each sample foretell as much".to_owned(),

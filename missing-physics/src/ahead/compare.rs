@@ -21,9 +21,6 @@ const PIECE: f64 = 0.5;
 /// Length of a block over which the standard error of a difference is taken, s.
 const BLOCK: f64 = 2.0;
 
-/// Part of what an effect that acts everywhere gains per error that it must gain somewhere.
-const THERE: f64 = 0.75;
-
 /// What a comparison says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
@@ -107,14 +104,9 @@ impl<'a> Comparison<'a> {
         self.beyond(a, b, 0.0, |_| 1.0)
     }
 
-    /// Whether what `b` gains over `a` lies elsewhere than among the errors that are `there`: per error of those it gains clearly
-    /// less than per error of all.
-    pub fn lies_elsewhere(&self, a: &Node, b: &Node, there: &[bool]) -> bool {
-        let all = |k: usize| self.worth(k);
-        let those = |k: usize| if there[k] { self.worth(k) } else { 0.0 };
-        let count = |worth: &dyn Fn(usize) -> f64| (0..there.len()).map(worth).sum::<f64>();
-        let gain = |worth: &dyn Fn(usize) -> f64| self.beyond(a, b, 0.0, worth).nats;
-        gain(&those) * count(&all) < THERE * gain(&all) * count(&those)
+    /// What `b` gains over `a` among the errors that are `there` alone, nats.
+    pub fn gained(&self, a: &Node, b: &Node, there: &[bool]) -> f64 {
+        self.beyond(a, b, 0.0, |k| if there[k] { self.worth(k) } else { 0.0 }).nats
     }
 
     /// How much better `b` predicts than `a` where the parameters of `a` cost so much more, which every block bears alike, and

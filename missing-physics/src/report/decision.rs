@@ -38,7 +38,7 @@ pub enum Reason {
     ErrorNoLower,
     /// Beside errors that are not the sensors' the effect that goes gains here and loses there.
     NotRecurring,
-    /// The effect that goes acts wherever the system moves, but gains next to nothing where that moves fast.
+    /// The effect that goes acts wherever the system moves, but gains too little where that moves fast.
     AtRest,
     /// An autoregression of the errors foretells what the effect that goes gains.
     Foretold,
