@@ -117,6 +117,7 @@ pub struct Plant {
     pub shares: bool,
     /// What each error is worth, if not 1.
     pub worth: Option<Vec<f64>>,
+    /// At which errors it moves fast, if its terms act wherever it moves.
     pub in_motion: Option<Vec<bool>>,
 }
 

@@ -140,18 +140,18 @@ impl Search<'_> {
         cost: Difference,
         without: &Node,
     ) -> Option<Reason> {
-        let in_motion = self.ahead.in_motion(term);
-        let gained_in_motion = in_motion.map(|there| self.comparison.gained(without, set, there));
         // Errors of an incomplete model are its own, and what lowers them counts only as far as it does so again and again
         // (Q. H. Vuong, 1989, and by ranks).
         let misfit = self.ahead.has_shares() && self.budget(set) > self.thresholds.complete;
+        let too_little =
+            |there: &[bool]| self.comparison.gained(without, set, there) < self.thresholds.better;
         if cost.nats < self.thresholds.better {
             Some(Reason::AsGoodWithout)
         } else if !set.foretells_more(without) {
             Some(Reason::ErrorNoLower)
         } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
-        } else if gained_in_motion.is_some_and(|nats| nats < self.thresholds.better) {
+        } else if self.ahead.in_motion(term).is_some_and(too_little) {
             Some(Reason::AtRest)
         } else if is_foretold(self.ahead, without, set, cost.nats, self.thresholds.better) {
             Some(Reason::Foretold)
