@@ -324,6 +324,10 @@ impl Ahead for View<'_> {
         self.family.vanishes(model, base)
     }
 
+    fn is_unseen(&self, model: &Fitted, base: &Fitted) -> bool {
+        self.family.gives_unseen(model, base)
+    }
+
     fn of_reading(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
         self.family.within_a_sample(model, base)
     }

@@ -272,7 +272,7 @@ impl<'a> Search<'a> {
                 && let Some((without, found)) = self.outdone(&climb, &last)
             {
                 // What a rival leaves of the names may be what a refused model does better.
-                rival = rival.into_iter().chain([found]).max_by(|a, b| gain(a).total_cmp(&gain(b)));
+                rival = rival.into_iter().chain(found).max_by(|a, b| gain(a).total_cmp(&gain(b)));
                 best = without;
                 continue;
             }

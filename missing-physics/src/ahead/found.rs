@@ -12,7 +12,7 @@ use super::chance::Chance;
 use super::compare::Difference;
 use super::node::Node;
 use super::screen::Promise;
-use crate::family::ModelFamily;
+use crate::family::{Fitted, ModelFamily};
 use crate::report::{Decision, Remains, Remark};
 
 /// What a search found.
@@ -51,6 +51,8 @@ pub struct Found {
     pub places: Vec<Remains>,
     /// What a user should know besides.
     pub remarks: Vec<Remark>,
+    /// The model that was refused and does most beyond the last one, if it does more: another look begins with it, too.
+    pub refused: Vec<Fitted>,
     /// Every comparison.
     pub decisions: Vec<Decision>,
     /// Terms that were not tried because time ran out.
@@ -80,6 +82,7 @@ impl Found {
             input_noise: None,
             places: Vec::new(),
             remarks: Vec::new(),
+            refused: Vec::new(),
             decisions: Vec::new(),
             untried: Vec::new(),
             stopped: false,

@@ -42,7 +42,17 @@ pub fn discover(
     let most = thresholds.most.min(settings.most);
     let thresholds = Thresholds { most, ..thresholds };
     let all_or_nothing = false;
-    let run = Run { settings, sets, thresholds, started, stop: &stop, tell: &tell, all_or_nothing };
+    let refused = &[];
+    let run = Run {
+        settings,
+        sets,
+        refused,
+        thresholds,
+        started,
+        stop: &stop,
+        tell: &tell,
+        all_or_nothing,
+    };
     let there = here.family.other_reading().filter(|_| !stop());
     let there = there.and_then(|OtherReading { family, nats, decided }| {
         Some(Other { reading: Reading::of(family)?, nats, decided })
@@ -57,11 +67,14 @@ pub fn discover(
             return run.told(sought.but(in_pieces));
         }
         let there = there.as_ref().and_then(Other::longer);
+        let before = sought.found.refused.clone();
+        let run = Run { refused: &before, ..run };
         run.looked(&longer, there.as_ref(), |again| {
             if again.found.stopped && again.found.added.is_empty() {
                 return run.told(sought.but(in_pieces).cut());
             }
-            run.told(again.after(sought.found.decisions))
+            let Found { decisions, refused, .. } = sought.found;
+            run.told(again.after(decisions, refused))
         })
     })
 }
@@ -202,6 +215,8 @@ struct Run<'a> {
     settings: &'a Settings<'a>,
     /// Terms of the base model and those that are left out.
     sets: (&'a [usize], &'a [usize]),
+    /// Models that looks before this one refused.
+    refused: &'a [Fitted],
     thresholds: Thresholds,
     started: Instant,
     stop: &'a (dyn Fn() -> bool + Sync),
@@ -236,7 +251,9 @@ impl<'a> Run<'a> {
         // Where one effect leaves something two may hide each other: the second look tells sooner.
         let second = if begun.is_complete() || here.residuals { None } else { look(most) };
         let second = match second {
-            Some(second) if second.is_pair() => return tell(second.after(begun.decisions())),
+            Some(second) if second.is_pair() => {
+                return tell(second.after(begun.decisions(), Vec::new()));
+            }
             other => other,
         };
         let first = begun.finished();
@@ -252,7 +269,7 @@ impl<'a> Run<'a> {
             Some(second)
                 if second.is_plainer_than(&first, &asked) || first.is_silent_on(&second) =>
             {
-                tell(second.after(first.found.decisions))
+                tell(second.after(first.found.decisions, first.found.refused))
             }
             Some(second) if second.found.stopped => tell(first.cut()),
             _ => tell(first),
@@ -322,7 +339,10 @@ impl<'a> Run<'a> {
             let held = held.into_iter().map(|node| search.joined(node, &more, base)).collect();
             (search.joined(lowest, &more, base), held)
         };
-        let climb = search.begin(base, elsewhere);
+        let mut climb = search.begin(base, elsewhere);
+        for model in self.refused {
+            search.ask_again(&mut climb, model.clone().within(family));
+        }
         Pursuit { reading, search, climb }
     }
 
@@ -339,9 +359,10 @@ impl<'a> Run<'a> {
         let Some(reading) = self.without_noise(&sought, found.complete) else {
             return self.reported(Sought { found, ..sought });
         };
-        let before = sought.found.decisions;
-        self.looked(&reading, None, |again| {
-            let again = again.after(before);
+        let Found { decisions, refused, .. } = sought.found;
+        let run = Run { refused: &refused, ..*self };
+        run.looked(&reading, None, |again| {
+            let again = again.after(decisions, Vec::new());
             self.reported(Sought { found: judged(&again), ..again })
         })
     }
@@ -444,6 +465,7 @@ mod tests {
             let run = Run {
                 settings: &settings,
                 sets: (&[DRIVE], &[BEAT, BOTH, TONE, PUSH, TWIN]),
+                refused: &[],
                 thresholds: settings.thresholds,
                 started: Instant::now(),
                 stop: &never,

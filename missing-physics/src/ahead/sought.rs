@@ -5,6 +5,7 @@ use super::fit::{Fitter, best_setting};
 use super::found::{Found, IN_FULL};
 use super::reading::Reading;
 use super::refused::refused;
+use crate::family::Fitted;
 use crate::report::{Decision, Remark};
 use crate::task::Thresholds;
 
@@ -68,9 +69,10 @@ impl Sought<'_> {
         self.found.added.is_empty() && self.reading.bears_out(&other.found)
     }
 
-    /// The same with what was compared before.
-    pub(super) fn after(mut self, decisions: Vec<Decision>) -> Self {
+    /// The same with what was compared before, and refused.
+    pub(super) fn after(mut self, decisions: Vec<Decision>, refused: Vec<Fitted>) -> Self {
         self.found.decisions.splice(0..0, decisions);
+        self.found.refused.extend(refused);
         self
     }
 

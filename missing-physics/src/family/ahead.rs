@@ -120,6 +120,13 @@ pub trait Ahead: Sync {
         None
     }
 
+    /// Whether that term is one that every system has to some extent, and this one too little for anyone to see (friction
+    /// that gives less than a count before it slides): nothing is missing without it, but it may do what effects that are
+    /// not there would.
+    fn is_unseen(&self, _model: &Fitted, _base: &Fitted) -> bool {
+        false
+    }
+
     /// A term that a model has beyond `base` and that does no more than another way to read the recording would, and why.
     fn of_reading(&self, _model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
         None

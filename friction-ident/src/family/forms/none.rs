@@ -27,7 +27,7 @@ impl FrictionFamily {
                     most: &of(2),
                     mass: self.mass_of(model),
                     force: self.force(),
-                    count: self.position_deviation() * 12.0f64.sqrt(),
+                    count: self.count(),
                     give: self.give(model),
                 };
                 if effect.gives(found.values, 0.0).is_some()
@@ -72,6 +72,16 @@ impl FrictionFamily {
         })
     }
 
+    /// Whether a model has a contact beyond a base that gives no more than a count.
+    pub(in crate::family) fn gives_unseen(&self, model: &Fitted, base: &Fitted) -> bool {
+        let gives = |term: &usize| {
+            let values = self.values_in_full(model, model.terms.iter().position(|t| t == term)?)?;
+            self.effect(*term)?.gives(&values, 0.0)
+        };
+        let added = model.terms.iter().filter(|term| !base.terms.contains(term));
+        added.filter_map(gives).next().is_some() && self.give(model) <= self.count()
+    }
+
     /// How far a contact may give: from one side to the other and as far again fit into the stroke.
     pub(super) fn longest_give(&self) -> f64 {
         0.25 * (self.stroke.1 - self.stroke.0)
@@ -84,6 +94,11 @@ impl FrictionFamily {
             self.effect(*term)?.gives(&self.values_in_full(model, place)?, level)
         });
         gives.unwrap_or(0.0)
+    }
+
+    /// The count of a position whose rounding errs as much as the recorded one.
+    fn count(&self) -> f64 {
+        self.position_deviation() * 12.0f64.sqrt()
     }
 
     /// Rms of the recorded force.

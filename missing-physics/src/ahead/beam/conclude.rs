@@ -233,6 +233,7 @@ impl Search<'_> {
         }
         let alike = self.in_full(self.thresholds.better.max(self.unnamed(&climb, last)));
         let sets = self.behind(&climb, last, alike);
+        let refused = self.refused_most(&climb, last);
         let stopped = (self.stop)();
         for promise in &mut beside.promises {
             promise.leverage = promise.leverage.map(|leverage| self.in_full(leverage));
@@ -262,6 +263,7 @@ impl Search<'_> {
             input_noise: None,
             places: Vec::new(),
             remarks: std::mem::take(&mut self.remarks),
+            refused: refused.map(|model| vec![model]).unwrap_or_default(),
             decisions,
             untried: self.untried.into_iter().collect(),
             stopped,

@@ -8,37 +8,44 @@
 //! beyond them is the greater part: then they are a smaller part of something else. And where nothing else was found, but a
 //! refused model foretells what the base errs beyond the sensors, something is missing.
 
-use super::{Climb, Search};
+use super::{Climb, STEPS, Search};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::leaves_most;
 use crate::ahead::node::Node;
+use crate::family::Fitted;
 use crate::report::{Outcome, Reason, Refusal, Remains};
 
 impl Search<'_> {
-    /// The model without the effects that a refused one outdoes, and what is to be said of it.
-    pub(super) fn outdone(&mut self, climb: &Climb, last: &Node) -> Option<(Node, Remains)> {
+    /// The model without the effects that a refused one outdoes, and what is to be said of it: nothing where only what nobody
+    /// can see takes them from a base that leaves nothing.
+    pub(super) fn outdone(
+        &mut self,
+        climb: &Climb,
+        last: &Node,
+    ) -> Option<(Node, Option<Remains>)> {
         let base = &climb.base;
         let added = Self::added(base, last);
-        if self.explains(base, last) {
-            return None;
-        }
+        let explains = self.explains(base, last);
         let is_rival = |refused: &Node| {
             if added.is_empty() {
                 return !leaves_most(base, refused, self.ahead.budget());
             }
             let has_more = Self::added(base, refused).len() > added.len();
             let may = !has_more || (self.is_complete(refused) && !self.is_complete(last));
-            may && !self.stands_for(refused, last) || self.is_lesser_part(base, last, refused)
+            may && !self.stands_for(base, last, refused) || self.is_lesser_part(base, last, refused)
         };
-        let (refused, refusal, by) = climb
-            .refused
-            .iter()
-            .filter(|(refused, _)| is_rival(refused))
-            .map(|(node, refusal)| (node, refusal, self.comparison.compare(last, node)))
-            .max_by(|a, b| a.2.nats.total_cmp(&b.2.nats))?;
-        let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
+        // By how much it does more than it needs to, to take names.
+        let asked = climb.refused.iter().filter(|(refused, _)| is_rival(refused));
+        let asked = asked.filter_map(|(refused, refusal)| {
+            let usual = self.is_usual_instead(base, last, refused);
+            let by = self.comparison.compare(last, refused);
+            let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
+            let more = by.nats - if usual { -clear } else { clear };
+            (usual || !explains).then_some((refused, refusal, by, usual, more))
+        });
+        let (refused, refusal, by, usual, more) = asked.max_by(|a, b| a.4.total_cmp(&b.4))?;
         let lesser = self.is_lesser_part(base, last, refused);
-        let outcome = if by.nats > clear { Outcome::Rival } else { Outcome::Worse };
+        let outcome = if more > 0.0 { Outcome::Rival } else { Outcome::Worse };
         let because = Some(Reason::Refused { refusal: refusal.clone() });
         self.note(added.len(), refused, last, by, outcome, because);
         if outcome == Outcome::Worse {
@@ -48,12 +55,13 @@ impl Search<'_> {
         let (kept, gone): (Vec<usize>, Vec<usize>) =
             added.iter().partition(|term| !lesser && others.contains(&self.main(**term)));
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
-        let found = Remains::Outdone {
+        let unseen = usual && kept.is_empty() && self.leaves_nothing(base);
+        let found = (!unseen).then(|| Remains::Outdone {
             by: self.named(&Self::added(base, refused)),
             refusal: refusal.clone(),
             instead_of: self.named(&gone),
             nats: self.in_full(by.nats),
-        };
+        });
         Some((result, found))
     }
 
@@ -74,22 +82,67 @@ impl Search<'_> {
         })
     }
 
+    /// The refused model that does most beyond the last one, where that is clear.
+    pub(super) fn refused_most(&self, climb: &Climb, last: &Node) -> Option<Fitted> {
+        let gains = climb.refused.iter().map(|(node, _)| {
+            let clear = self.thresholds.clear(self.comparison.compare(&climb.base, node).nats);
+            (node, self.comparison.compare(last, node).nats - clear)
+        });
+        let most = gains.filter(|(_, more)| *more > 0.0).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some(most.0.model.clone())
+    }
+
+    /// Asks a model that another look refused: that its own search may have ended beside it is no reason for a name.
+    pub fn ask_again(&mut self, climb: &mut Climb, model: Fitted) {
+        if (self.stop)() {
+            return;
+        }
+        let node = self.refit(&model, climb.base.setting, STEPS.2);
+        let size = Self::added(&climb.base, &node).len();
+        let (gain, refusal) = self.asked(&climb.base.clone(), &climb.base.clone(), &node, size);
+        if let Some(refusal) = refusal.filter(|_| gain.nats > self.thresholds.better) {
+            climb.refused.push((node, refusal));
+        }
+    }
+
+    /// Whether a refused model has what every system has, too little to be seen, in the place of effects, and leaves no more
+    /// than they do: where it does as much, what few systems have need not be there.
+    fn is_usual_instead(&self, base: &Node, node: &Node, refused: &Node) -> bool {
+        let names = !Self::added(base, node).is_empty();
+        let beyond = self.key(refused).difference(&self.key(node)).count();
+        let leaves_more = self.is_complete(node) && !self.is_complete(refused);
+        names && beyond == 1 && !leaves_more && self.ahead.is_unseen(&refused.model, &base.model)
+    }
+
     /// Whether a refused model goes on from all effects of one that leaves something, and does the greater part of what
     /// both do to the squared error.
     fn is_lesser_part(&self, base: &Node, node: &Node, refused: &Node) -> bool {
         let more = Self::added(base, refused).len() > Self::added(base, node).len();
-        let square = |node: &Node| self.budget(node).powi(2);
         let goes_on = self.key(refused).is_superset(&self.key(node));
-        let greater = square(node) - square(refused) > square(base) - square(node);
-        more && !self.is_complete(node) && goes_on && greater
+        more && !self.is_complete(node) && goes_on && self.does_most(base, node, refused)
+    }
+
+    /// Whether a model does the greater part of what it does to the squared error beyond what another one does.
+    fn does_most(&self, base: &Node, node: &Node, refused: &Node) -> bool {
+        let square = |node: &Node| self.budget(node).powi(2);
+        square(node) - square(refused) > square(base) - square(node)
     }
 
     /// Whether a refused model is another way to write one: it has the same effects, or would have in the form that it
-    /// is related to (a contact that gives more than its gap is wide is a spring).
-    fn stands_for(&self, refused: &Node, node: &Node) -> bool {
+    /// is related to (a contact that gives more than its gap is wide is a spring), of which that one does the greater part.
+    fn stands_for(&self, base: &Node, node: &Node, refused: &Node) -> bool {
         let effects = self.key(node);
         let has = |terms: &[usize]| self.mains(terms).is_superset(&effects);
-        let related = self.ahead.relatives(&refused.model);
-        has(&refused.model.terms) || related.iter().any(|model| has(&model.terms))
+        let related = || self.ahead.relatives(&refused.model).iter().any(|model| has(&model.terms));
+        has(&refused.model.terms) || related() && !self.does_most_of_it(base, node, refused)
+    }
+
+    /// The same beyond the effects that both have.
+    fn does_most_of_it(&self, base: &Node, node: &Node, refused: &Node) -> bool {
+        let others = self.key(refused);
+        let mut both = Self::added(base, node);
+        both.retain(|term| others.contains(&self.main(*term)));
+        let from = if both.is_empty() { base.clone() } else { self.only(base, node, &both) };
+        self.does_most(&from, node, refused)
     }
 }

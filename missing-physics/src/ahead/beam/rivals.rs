@@ -43,7 +43,6 @@ impl Search<'_> {
         let nothing = Self::added(&climb.base, last).is_empty();
         let takes_back = rival.as_ref().is_some_and(|does| nothing || does.instead_of > 0);
         let outdone = if takes_back { None } else { self.outdone(climb, last) };
-        let outdone = outdone.map(|(without, found)| (without, Some(found)));
         outdone.or_else(|| rival.map(|does| (does.without, does.found)))
     }
 
