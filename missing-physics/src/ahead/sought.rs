@@ -177,7 +177,7 @@ mod tests {
         };
         let mut later = sought(&reading, &plant, 1, true);
         later.found.decisions = vec![decision(2)];
-        let all = later.after(vec![decision(1)]).found.decisions;
+        let all = later.after(vec![decision(1)], Vec::new()).found.decisions;
         assert_eq!(all.iter().map(|d| d.rung).collect::<Vec<_>>(), [1, 2]);
     }
 

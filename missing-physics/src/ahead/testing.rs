@@ -87,6 +87,8 @@ pub struct Plant {
     regimes: Vec<Regime>,
     /// A term that is no effect in its plain form.
     pub none: Option<usize>,
+    /// A term that every system has, too little of it here to be seen.
+    pub unseen: Option<usize>,
     /// The effects whose amplitudes may be none.
     pub optional: Vec<usize>,
     /// The effects that are shapes of the rival.
@@ -198,6 +200,7 @@ impl Plant {
             regimes: vec![Regime { name: "all".into(), member: vec![true; SAMPLES] }],
             time,
             none: None,
+            unseen: None,
             optional: Vec::new(),
             kin: vec![PUSH],
             forms: vec![(BENT, WAVE)],
@@ -325,6 +328,9 @@ impl Ahead for Plant {
     fn vanishes(&self, model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
         let refusal = Refusal::AtLimit { parameter: "it is none".into() };
         self.none.filter(|term| model.terms.contains(term)).map(|term| (term, refusal))
+    }
+    fn is_unseen(&self, model: &Fitted, _base: &Fitted) -> bool {
+        self.unseen.is_some_and(|term| model.terms.contains(&term))
     }
     fn of_reading(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
         let refusal = Refusal::AtLimit { parameter: "it is the reading".into() };

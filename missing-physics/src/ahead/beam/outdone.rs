@@ -7,6 +7,9 @@
 //! nothing without them. Effects that the refused model has, too, stay, unless it goes on from all of them and what it does
 //! beyond them is the greater part: then they are a smaller part of something else. And where nothing else was found, but a
 //! refused model foretells what the base errs beyond the sensors, something is missing.
+//!
+//! What every system has, too little to be seen (a contact that gives less than a count), takes effects without doing more
+//! than they do, and is nothing that is missing. What one look refused, the next one asks, too.
 
 use super::{Climb, STEPS, Search};
 use crate::ahead::compare::Difference;
@@ -16,8 +19,8 @@ use crate::family::Fitted;
 use crate::report::{Outcome, Reason, Refusal, Remains};
 
 impl Search<'_> {
-    /// The model without the effects that a refused one outdoes, and what is to be said of it: nothing where only what nobody
-    /// can see takes them from a base that leaves nothing.
+    /// The model without the effects that a refused one outdoes, and what is to be said of it: nothing of what every system
+    /// has, which is nothing that is missing.
     pub(super) fn outdone(
         &mut self,
         climb: &Climb,
@@ -40,7 +43,7 @@ impl Search<'_> {
             let usual = self.is_usual_instead(base, last, refused);
             let by = self.comparison.compare(last, refused);
             let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
-            let more = by.nats - if usual { -clear } else { clear };
+            let more = by.nats - if usual && !added.is_empty() { -clear } else { clear };
             (usual || !explains).then_some((refused, refusal, by, usual, more))
         });
         let (refused, refusal, by, usual, more) = asked.max_by(|a, b| a.4.total_cmp(&b.4))?;
@@ -48,15 +51,14 @@ impl Search<'_> {
         let outcome = if more > 0.0 { Outcome::Rival } else { Outcome::Worse };
         let because = Some(Reason::Refused { refusal: refusal.clone() });
         self.note(added.len(), refused, last, by, outcome, because);
-        if outcome == Outcome::Worse {
+        if outcome == Outcome::Worse || usual && added.is_empty() {
             return None;
         }
         let others = self.key(refused);
         let (kept, gone): (Vec<usize>, Vec<usize>) =
             added.iter().partition(|term| !lesser && others.contains(&self.main(**term)));
         let result = if kept.is_empty() { base.clone() } else { self.only(base, last, &kept) };
-        let unseen = usual && kept.is_empty() && self.leaves_nothing(base);
-        let found = (!unseen).then(|| Remains::Outdone {
+        let found = (!usual).then(|| Remains::Outdone {
             by: self.named(&Self::added(base, refused)),
             refusal: refusal.clone(),
             instead_of: self.named(&gone),
@@ -105,13 +107,12 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a refused model has what every system has, too little to be seen, in the place of effects, and leaves no more
-    /// than they do: where it does as much, what few systems have need not be there.
+    /// Whether a refused model has what every system has, too little to be seen, beside effects of one or none of them,
+    /// and leaves no more: where it does as much, what few systems have need not be there.
     fn is_usual_instead(&self, base: &Node, node: &Node, refused: &Node) -> bool {
-        let names = !Self::added(base, node).is_empty();
         let beyond = self.key(refused).difference(&self.key(node)).count();
         let leaves_more = self.is_complete(node) && !self.is_complete(refused);
-        names && beyond == 1 && !leaves_more && self.ahead.is_unseen(&refused.model, &base.model)
+        beyond == 1 && !leaves_more && self.ahead.is_unseen(&refused.model, &base.model)
     }
 
     /// Whether a refused model goes on from all effects of one that leaves something, and does the greater part of what

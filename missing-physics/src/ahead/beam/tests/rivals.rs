@@ -140,7 +140,7 @@ fn outdone(
     plant: &Plant,
     last: &[(usize, &[f64])],
     refused: &[(usize, &[f64])],
-) -> Option<(Node, Remains)> {
+) -> Option<(Node, Option<Remains>)> {
     let mut climb = climb(plant, Vec::new());
     let refusal = Refusal::AtLimit { parameter: "wave.size".into() };
     climb.refused.push((node(plant, refused), refusal));
@@ -154,7 +154,7 @@ fn a_refused_set_takes_back_the_effects_that_it_does_without() {
     let refused: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (BEAT, &[0.05])];
     let (without, remains) = outdone(&plant, &last, &refused).unwrap();
     assert_eq!(without.effects(&plant), [WAVE]);
-    let Remains::Outdone { by, instead_of, .. } = remains else { panic!("{remains:?}") };
+    let Some(Remains::Outdone { by, instead_of, .. }) = remains else { panic!("{remains:?}") };
     assert_eq!((by, instead_of), (vec!["wave".into(), "beat".into()], vec!["push".to_owned()]));
 }
 
@@ -219,7 +219,9 @@ fn where_nothing_was_found_a_refused_set_that_explains_it_says_that_something_is
     let told = |wave: f64| outdone(&plant, &[], &[(WAVE, &[wave])]);
     let (without, remains) = told(0.05).unwrap();
     assert!(without.effects(&plant).is_empty());
-    let Remains::Outdone { by, instead_of, nats, .. } = remains else { panic!("{remains:?}") };
+    let Some(Remains::Outdone { by, instead_of, nats, .. }) = remains else {
+        panic!("{remains:?}")
+    };
     assert_eq!((by, instead_of), (vec!["wave".to_owned()], Vec::new()));
     assert!(nats > 100.0, "{nats}");
     // It predicts better, and leaves nearly all of it.
@@ -235,11 +237,66 @@ fn a_refused_set_takes_nothing_back_that_it_is_another_way_to_write() {
     let plant = Plant::new(14, &[bent]);
     assert!(outdone(&plant, &[(PUSH, &[0.01])], &[bent]).is_some());
     assert!(outdone(&plant, &[(WAVE, &[0.05])], &[bent]).is_none(), "another form");
-    let mut plant = Plant::new(14, &[(WAVE, &[0.05])]);
-    let (push, wave) = ((PUSH, &[0.01][..]), (WAVE, &[0.05][..]));
-    assert!(outdone(&plant, &[push], &[wave]).is_some());
-    plant.related = Some((WAVE, PUSH));
-    assert!(outdone(&plant, &[push], &[wave]).is_none(), "related");
+    // What it is related to stands for it where that does the greater part.
+    let beat: (usize, &[f64]) = (BEAT, &[0.2]);
+    for (related, part, beside, takes_back) in [
+        (false, 0.03, false, true),
+        (true, 0.03, false, false),
+        (true, 0.005, false, true),
+        (true, 0.03, true, false),
+        (true, 0.005, true, true),
+    ] {
+        let wave: (usize, &[f64]) = (WAVE, &[0.05]);
+        let count = if beside { 2 } else { 1 };
+        let mut plant = Plant::new(14, &[wave, beat][..count]);
+        plant.related = related.then_some((WAVE, TWIN));
+        let part = [part];
+        let (last, refused) = ([beat, (TWIN, &part)], [beat, wave]);
+        let found = outdone(&plant, &last[2 - count..], &refused[2 - count..]);
+        let left = found.map(|(without, _)| without.effects(&plant));
+        let kept = if beside { vec![BEAT] } else { Vec::new() };
+        assert_eq!(left, takes_back.then_some(kept), "{related} {part:?} {beside}");
+    }
+}
+
+#[test]
+fn what_every_system_has_comes_before_what_does_no_more_and_is_nothing_that_is_missing() {
+    let [wave, twin, beat, push]: [(usize, &[f64]); 4] =
+        [(WAVE, &[0.05]), (TWIN, &[0.05]), (BEAT, &[0.05]), (PUSH, &[1e-4])];
+    let mut plant = Plant::new(19, &[wave, beat]);
+    let asked = |plant: &Plant, last: &[(usize, &[f64])], refused: &[(usize, &[f64])]| {
+        let found = outdone(plant, last, refused);
+        found.map(|(without, remains)| (without.effects(plant), remains.is_some()))
+    };
+    assert_eq!(asked(&plant, &[beat, twin], &[beat, wave]), None);
+    assert_eq!(asked(&plant, &[], &[wave]), Some((vec![], true)));
+    plant.unseen = Some(WAVE);
+    assert_eq!(asked(&plant, &[beat, twin], &[beat, wave]), Some((vec![BEAT], false)));
+    assert_eq!(asked(&plant, &[twin], &[wave]), Some((vec![], false)));
+    assert_eq!(asked(&plant, &[], &[wave]), None, "nothing to take back");
+    assert_eq!(asked(&plant, &[beat, twin], &[wave]), None, "it leaves the beat");
+    assert_eq!(asked(&plant, &[beat, twin], &[beat, push, wave]), None, "beside another effect");
+}
+
+#[test]
+fn what_another_look_refused_is_asked_again_where_it_does_clearly_more() {
+    let (wave, push): ((usize, &[f64]), (usize, &[f64])) = ((WAVE, &[0.05]), (PUSH, &[1e-4]));
+    let mut plant = Plant::new(20, &[wave]);
+    plant.none = Some(WAVE);
+    let mut climb = climb(&plant, Vec::new());
+    let mut search = search(&plant, narrow());
+    let last = node(&plant, &[push]);
+    assert_eq!(search.refused_most(&climb, &last), None);
+    let start = Plant::model(&[(WAVE, &[0.02])]);
+    search.ask_again(&mut climb, start.clone());
+    let model = search.refused_most(&climb, &last).unwrap();
+    assert!((model.values[1] - 0.05).abs() < 0.005, "{:?}", model.values);
+    assert_eq!(search.refused_most(&climb, &node(&plant, &[wave])), None);
+    // What is an effect here is found here.
+    plant.none = None;
+    let mut climb = self::climb(&plant, Vec::new());
+    self::search(&plant, narrow()).ask_again(&mut climb, start);
+    assert!(climb.refused.is_empty());
 }
 
 #[test]
