@@ -307,12 +307,12 @@ impl Ahead for Plant {
         vec![Rival { term: RIVAL, title: "a wave less a beat", kin: self.kin.clone() }]
     }
     fn relatives(&self, model: &Fitted) -> Vec<Fitted> {
-        let related = self.related.filter(|(term, _)| model.terms.last() == Some(term));
         let swapped = |(term, other)| {
-            let size = model.values.last().copied().unwrap_or_default();
-            model.without(self, term).with(other, &[size])
+            let place = model.terms.iter().position(|own| *own == term)?;
+            let size = model.values[model.range(self, place).start];
+            Some(model.without(self, term).with(other, &[size]))
         };
-        related.map(swapped).into_iter().collect()
+        self.related.and_then(swapped).into_iter().collect()
     }
     fn part(&self) -> Option<Box<dyn Ahead + '_>> {
         self.part.as_ref().map(|part| Box::new(Borrowed(part, 1.0)) as Box<dyn Ahead>)

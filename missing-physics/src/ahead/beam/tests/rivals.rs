@@ -237,32 +237,31 @@ fn a_refused_set_takes_nothing_back_that_it_is_another_way_to_write() {
     let plant = Plant::new(14, &[bent]);
     assert!(outdone(&plant, &[(PUSH, &[0.01])], &[bent]).is_some());
     assert!(outdone(&plant, &[(WAVE, &[0.05])], &[bent]).is_none(), "another form");
-    // What it is related to stands for it where that does the greater part.
-    let beat: (usize, &[f64]) = (BEAT, &[0.2]);
-    for (related, part, beside, takes_back) in [
-        (false, 0.03, false, true),
-        (true, 0.03, false, false),
-        (true, 0.005, false, true),
-        (true, 0.03, true, false),
-        (true, 0.005, true, true),
-    ] {
-        let wave: (usize, &[f64]) = (WAVE, &[0.05]);
-        let count = if beside { 2 } else { 1 };
-        let mut plant = Plant::new(14, &[wave, beat][..count]);
-        plant.related = related.then_some((WAVE, TWIN));
-        let part = [part];
-        let (last, refused) = ([beat, (TWIN, &part)], [beat, wave]);
-        let found = outdone(&plant, &last[2 - count..], &refused[2 - count..]);
-        let left = found.map(|(without, _)| without.effects(&plant));
-        let kept = if beside { vec![BEAT] } else { Vec::new() };
-        assert_eq!(left, takes_back.then_some(kept), "{related} {part:?} {beside}");
+    // What it is related to stands for it where that does the greater part, beyond what is beside it.
+    for (last, related, takes_back) in
+        [(TWIN, None, true), (TWIN, Some(TWIN), false), (PUSH, Some(PUSH), true)]
+    {
+        for beside in [&[][..], &[(BEAT, &[0.2][..])]] {
+            let and = |term| [beside, &[(term, &[0.05])]].concat();
+            let mut plant = Plant::new(14, &and(WAVE));
+            plant.related = related.map(|other| (WAVE, other));
+            let mut climb = climb(&plant, Vec::new());
+            let mut search = search(&plant, Thresholds { share: 0.0, ..narrow() });
+            let fitted = |term| search.refit(&Plant::model(&and(term)), 0, STEPS.1);
+            let (last, refused) = (fitted(last), fitted(WAVE));
+            climb.base = search.refit(&climb.base.model, 0, STEPS.1);
+            climb.refused.push((refused, Refusal::AtLimit { parameter: "wave.size".into() }));
+            let found = search.outdone(&climb, &last).map(|(without, _)| without.effects(&plant));
+            let kept = beside.iter().map(|(term, _)| *term).collect();
+            assert_eq!(found, takes_back.then_some(kept), "{related:?} {}", beside.len());
+        }
     }
 }
 
 #[test]
 fn what_every_system_has_comes_before_what_does_no_more_and_is_nothing_that_is_missing() {
     let [wave, twin, beat, push]: [(usize, &[f64]); 4] =
-        [(WAVE, &[0.05]), (TWIN, &[0.05]), (BEAT, &[0.05]), (PUSH, &[1e-4])];
+        [(WAVE, &[0.02]), (TWIN, &[0.02]), (BEAT, &[0.01]), (PUSH, &[1e-4])];
     let mut plant = Plant::new(19, &[wave, beat]);
     let asked = |plant: &Plant, last: &[(usize, &[f64])], refused: &[(usize, &[f64])]| {
         let found = outdone(plant, last, refused);
