@@ -1,7 +1,7 @@
 //! What the name of a column says: which quantity, in which unit.
 
 use crate::role::{ColumnRole, Facts};
-use crate::unit::{self, Unit};
+use crate::unit::{self, Dimension, Unit};
 
 /// The name of a column, taken apart.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,15 +18,17 @@ impl<'a> Header<'a> {
     /// Takes apart `force_N`, `Force [N]`, `force (N)`, `force`.
     pub fn parse(name: &'a str) -> Self {
         if let Some((base, text)) = brackets(name) {
-            return Self { base: plain(base), unit: unit::find(text), bracketed: Some(text) };
+            let base = plain(base);
+            return Self { unit: unit_of(&base, text), base, bracketed: Some(text) };
         }
         // The leftmost underscore first: `speed_m_s` is in m/s, not in s.
         let endings = name.match_indices('_').map(|(at, _)| name.split_at(at));
-        let known = endings
-            .filter(|(base, _)| !base.is_empty())
-            .find_map(|(base, rest)| unit::find(&rest[1..]).map(|unit| (base, unit)));
+        let known = endings.filter(|(base, _)| !base.is_empty()).find_map(|(base, rest)| {
+            let base = plain(base);
+            unit_of(&base, &rest[1..]).map(|unit| (base, unit))
+        });
         match known {
-            Some((base, unit)) => Self { base: plain(base), unit: Some(unit), bracketed: None },
+            Some((base, unit)) => Self { base, unit: Some(unit), bracketed: None },
             None => Self { base: plain(name), unit: None, bracketed: None },
         }
     }
@@ -34,6 +36,16 @@ impl<'a> Header<'a> {
     fn suits(&self, role: ColumnRole) -> bool {
         self.unit.is_none_or(|unit| role.accepts(unit.quantity))
     }
+}
+
+/// The unit written `text` behind a name. Many programs write all names in lower case: what is called a force is not in
+/// nanometres, `force_n` is in N and `torque_nm` in Nm.
+fn unit_of(base: &str, text: &str) -> Option<&'static Unit> {
+    if !ColumnRole::Force.facts().aliases.contains(&base) {
+        return unit::find(text);
+    }
+    let known = unit::find(text).filter(|unit| unit.quantity != Dimension::Length);
+    known.or_else(|| unit::find_lower(text))
 }
 
 /// The column among `names` that holds `role`, by the names it is known under.
@@ -55,7 +67,7 @@ fn ending<'a>(facts: &Facts, name: &'a str) -> Option<&'a str> {
     let (base, ending) = name.split_once('_')?;
     let long_name = facts.aliases.iter().any(|a| a.len() >= 4 && base.eq_ignore_ascii_case(a));
     let like_a_unit = (1..=4).contains(&ending.len()) && !ending.contains('_');
-    (long_name && like_a_unit && unit::find(ending).is_none()).then_some(ending)
+    (long_name && like_a_unit && Header::parse(name).unit.is_none()).then_some(ending)
 }
 
 fn brackets(name: &str) -> Option<(&str, &str)> {
@@ -89,11 +101,17 @@ mod tests {
             ("q_ref_m", "q_ref", "m"),
             ("angle (deg)", "angle", "deg"),
             ("x [\u{b5}m]", "x", "um"),
+            ("force_n", "force", "N"),
+            ("torque_nm", "torque", "Nm"),
+            ("motor torque [mnm]", "motor_torque", "mNm"),
+            ("position_nm", "position", "nm"),
         ] {
             let header = Header::parse(name);
             assert_eq!((header.base.as_str(), header.unit.map(|u| u.name)), (base, Some(unit)));
         }
-        assert_eq!(Header::parse("position").unit, None);
+        for without in ["position", "force_KN", "x_n"] {
+            assert_eq!(Header::parse(without).unit, None, "{without}");
+        }
     }
 
     #[test]

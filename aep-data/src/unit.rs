@@ -146,6 +146,13 @@ pub fn find(text: &str) -> Option<&'static Unit> {
     UNITS.iter().find(|unit| unit.name == name)
 }
 
+/// The unit of force or torque that `text` is in lower case. No two of them differ in their case alone.
+pub(crate) fn find_lower(text: &str) -> Option<&'static Unit> {
+    let is_force = |unit: &&Unit| matches!(unit.quantity, Dimension::Force | Dimension::Torque);
+    let mut forces = UNITS.iter().filter(is_force);
+    forces.find(|unit| unit.name.to_lowercase() == text)
+}
+
 /// `V` or `A`, where a unit is of a voltage or a current.
 pub fn electrical(unit: &Unit) -> Option<&'static str> {
     match unit.name {
@@ -192,6 +199,10 @@ mod tests {
         for (index, unit) in UNITS.iter().enumerate() {
             assert!(UNITS[..index].iter().all(|other| other.name != unit.name), "{}", unit.name);
         }
+        let force = |unit: &&Unit| matches!(unit.quantity, Dimension::Force | Dimension::Torque);
+        let mut lower: Vec<_> = UNITS.iter().filter(force).map(|u| u.name.to_lowercase()).collect();
+        lower.sort();
+        assert!(lower.windows(2).all(|pair| pair[0] != pair[1]), "{lower:?}");
     }
 
     #[test]
