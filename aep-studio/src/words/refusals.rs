@@ -8,6 +8,9 @@ pub fn reason(decision: &Decision) -> Option<String> {
     Some(match decision.because.as_ref()? {
         Reason::BestOfSize => format!("the best set of {}", decision.rung),
         Reason::AsGoodWithout => "as good without".to_owned(),
+        Reason::WithinSensors => {
+            "without it the model errs less than the sensors make, in whose units it gains too little".to_owned()
+        }
         Reason::ErrorNoLower => "the prediction error is no lower with it".to_owned(),
         Reason::NotRecurring => {
             "by its standard error chance gains as much, and the model with it is incomplete"

@@ -328,6 +328,10 @@ impl Ahead for View<'_> {
         self.family.gives_unseen(model, base)
     }
 
+    fn may_be_unseen(&self) -> Option<usize> {
+        self.family.contact()
+    }
+
     fn of_reading(&self, model: &Fitted, base: &Fitted) -> Option<(usize, Refusal)> {
         self.family.within_a_sample(model, base)
     }

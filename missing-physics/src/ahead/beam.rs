@@ -224,7 +224,8 @@ impl<'a> Search<'a> {
             best = self.beside_usual(&mut climb, best);
         }
         let mut best = self.usual_instead(&climb, best);
-        let (mut simplified, mut rival, mut unknown) = (BTreeSet::new(), None, None);
+        let (mut simplified, mut unseen) = (BTreeSet::new(), BTreeSet::new());
+        let (mut rival, mut unknown) = (None, None);
         loop {
             let (needed, costs) = self.prune(&climb, best);
             // What took the place of one effect, or is left of a set that another one has gone from, may leave an effect to a
@@ -261,6 +262,9 @@ impl<'a> Search<'a> {
                     best = self.best_of_its_size(&climb, left);
                     continue;
                 }
+            }
+            if unseen.insert(last.model.terms.clone()) {
+                self.ask_unseen(&mut climb, &last, &costs);
             }
             if rival.is_none() {
                 if let Some((without, found)) = self.instead(&climb, &last) {

@@ -127,6 +127,11 @@ pub trait Ahead: Sync {
         false
     }
 
+    /// The term that [`Ahead::is_unseen`] is about, in the form that it is asked in.
+    fn may_be_unseen(&self) -> Option<usize> {
+        None
+    }
+
     /// A term that a model has beyond `base` and that does no more than another way to read the recording would, and why.
     fn of_reading(&self, _model: &Fitted, _base: &Fitted) -> Option<(usize, Refusal)> {
         None

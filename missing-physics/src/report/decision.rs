@@ -34,6 +34,8 @@ pub enum Reason {
     BestOfSize,
     /// The candidate does without an effect, and as well.
     AsGoodWithout,
+    /// The model without the effect that goes errs less than the sensors make, in whose units the effect gains too little.
+    WithinSensors,
     /// The prediction error is no lower with the effect that goes.
     ErrorNoLower,
     /// Beside errors that are not the sensors' the effect that goes gains here and loses there.

@@ -82,6 +82,11 @@ impl FrictionFamily {
         added.filter_map(gives).next().is_some() && self.give(model) <= self.count()
     }
 
+    /// The most general contact.
+    pub(in crate::family) fn contact(&self) -> Option<usize> {
+        self.terms.iter().position(|term| term.name == "presliding:free")
+    }
+
     /// How far a contact may give: from one side to the other and as far again fit into the stroke.
     pub(super) fn longest_give(&self) -> f64 {
         0.25 * (self.stroke.1 - self.stroke.0)

@@ -81,9 +81,8 @@ impl Search<'_> {
                 idle.sort_by_key(|(k, _)| std::cmp::Reverse(self.parameters(&costs[*k].2)));
             }
             // What a single one gains has been asked, but not when it does so.
-            let asked = |(_, why): &(usize, Reason)| {
-                costs.len() > 1 || matches!(why, Reason::NotRecurring | Reason::AtRest)
-            };
+            let since = [Reason::WithinSensors, Reason::NotRecurring, Reason::AtRest];
+            let asked = |(_, why): &(usize, Reason)| costs.len() > 1 || since.contains(why);
             let Some((goes, because)) = idle.pop().filter(asked) else {
                 return (best, costs);
             };
@@ -147,6 +146,8 @@ impl Search<'_> {
             |there: &[bool]| self.comparison.gained(without, set, there) < self.thresholds.better;
         if cost.nats < self.thresholds.better {
             Some(Reason::AsGoodWithout)
+        } else if cost.nats * self.of_the_sensors(without) < self.thresholds.better {
+            Some(Reason::WithinSensors)
         } else if !set.foretells_more(without) {
             Some(Reason::ErrorNoLower)
         } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
@@ -158,6 +159,12 @@ impl Search<'_> {
         } else {
             None
         }
+    }
+
+    /// What a nat that is gained over a model is in units of what the sensors make, where it errs less than that: a smaller
+    /// error is no better known than they are.
+    fn of_the_sensors(&self, model: &Node) -> f64 {
+        if self.ahead.has_shares() { self.budget(model).min(1.0).powi(2) } else { 1.0 }
     }
 
     /// The model without a term, refitted; what stood in the place of a term of the base leaves it to that one.

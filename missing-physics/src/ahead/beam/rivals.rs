@@ -14,7 +14,7 @@ use crate::family::{Fitted, Rival};
 use crate::report::{Outcome, Reason, Remains};
 
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
-const PROMISED: f64 = 0.5;
+pub(super) const PROMISED: f64 = 0.5;
 
 /// What a rival does.
 struct Does {

@@ -124,6 +124,22 @@ fn beside_an_incomplete_model_an_effect_must_gain_again_and_again() {
 }
 
 #[test]
+fn what_errs_less_than_the_sensors_is_gained_in_their_units() {
+    let plant = Plant::new(3, &[(WAVE, &[0.05])]);
+    let search = search(&plant, narrow());
+    let (mut set, mut without) = (node(&plant, &[]), node(&plant, &[]));
+    let better = narrow().better;
+    for (times, nats, named) in
+        [(1.0, 1.01, true), (2.0, 1.01, true), (0.5, 3.9, false), (0.5, 4.1, true)]
+    {
+        (set.scale, without.scale) = (0.4 * plant.budget(), times * plant.budget());
+        let gain = Difference { nats: nats * better, error: 0.0, ranks: 9.0 };
+        let because = search.why_goes(&set, WAVE, gain, &without);
+        assert_eq!(because != Some(Reason::WithinSensors), named, "{times} {nats} {because:?}");
+    }
+}
+
+#[test]
 fn a_single_effect_of_an_incomplete_model_goes_where_it_gains_in_one_stretch() {
     let plant = Plant::new(3, &[]);
     // Errors of the base against those of the effect: larger everywhere, or in an eighth of the recording alone.

@@ -278,6 +278,58 @@ fn what_every_system_has_comes_before_what_does_no_more_and_is_nothing_that_is_m
 }
 
 #[test]
+fn what_every_system_has_gives_way_to_what_does_more_again_and_again() {
+    let mut plant = Plant::new(19, &[(WAVE, &[0.02])]);
+    plant.unseen = Some(WAVE);
+    let last = node(&plant, &[(TWIN, &[0.02])]);
+    let mut climb = climb(&plant, Vec::new());
+    // What the other one errs more: everywhere, or in an eighth of the recording alone.
+    for ([there, elsewhere], takes_back) in [([1.3, 1.3], false), ([2.0, 0.99], true)] {
+        let eighth = last.errors.len() / 8;
+        let errors = last.errors.iter().enumerate();
+        let errors = errors.map(|(k, error)| error * if k < eighth { there } else { elsewhere });
+        let refused =
+            Node::new(&plant, Plant::model(&[(WAVE, &[0.02])]), last.setting, errors.collect());
+        climb.refused = vec![(refused, Refusal::AtLimit { parameter: "wave.size".into() })];
+        let mut search = search(&plant, narrow());
+        let by = search.comparison.compare(&last, &climb.refused[0].0);
+        assert!(by.nats < -narrow().better, "{by:?}");
+        assert_eq!(search.outdone(&climb, &last).is_some(), takes_back, "{by:?}");
+    }
+}
+
+#[test]
+fn what_every_system_has_is_asked_in_the_place_of_a_name_though_the_search_passed_it_by() {
+    let refused = |plant: &Plant, last: &[(usize, &[f64])], before: usize| {
+        let mut climb = climb(plant, Vec::new());
+        let refusal = Refusal::AtLimit { parameter: "push.size".into() };
+        climb.refused = vec![(node(plant, &[(PUSH, &[1e-4])]), refusal); before];
+        let mut search = search(plant, narrow());
+        let (last, base) = (node(plant, last), climb.base.clone());
+        let cost = search.comparison.compare(&base, &last);
+        let costs: Vec<_> =
+            last.effects(plant).into_iter().map(|term| (term, cost, base.clone())).collect();
+        search.ask_unseen(&mut climb, &last, &costs);
+        let found = search.outdone(&climb, &last);
+        let found = found.map(|(without, told)| (without.effects(plant), told.is_some()));
+        (climb.refused.len() - before, found)
+    };
+    let twin: [(usize, &[f64]); 1] = [(TWIN, &[0.0025])];
+    let mut plant = Plant::new(19, &[(WAVE, &[0.0025])]);
+    plant.none = Some(WAVE);
+    assert_eq!(refused(&plant, &twin, 0), (0, None));
+    plant.unseen = Some(WAVE);
+    assert_eq!(refused(&plant, &twin, 0), (1, Some((vec![], false))));
+    // Where nothing is named there must be something that says what is missing.
+    assert_eq!(refused(&plant, &[], 0).0, 0);
+    assert_eq!(refused(&plant, &[], 1).0, 1);
+    // What it cannot do.
+    let mut plant = Plant::new(19, &[(BEAT, &[0.05])]);
+    (plant.none, plant.unseen) = (Some(WAVE), Some(WAVE));
+    assert_eq!(refused(&plant, &[(BEAT, &[0.05])], 0), (0, None));
+}
+
+#[test]
 fn what_another_look_refused_is_asked_again_where_it_does_clearly_more() {
     let (wave, push): ((usize, &[f64]), (usize, &[f64])) = ((WAVE, &[0.05]), (PUSH, &[1e-4]));
     let mut plant = Plant::new(20, &[wave]);
