@@ -46,10 +46,12 @@ impl Search<'_> {
             let by = self.comparison.compare(last, refused);
             let clear = self.thresholds.clear(self.comparison.compare(base, refused).nats);
             // What every system has need not do more, and gives way to what does more beyond doubt alone.
-            let more = match (usual && !added.is_empty(), self.gains_again(refused, last)) {
-                (false, _) => by.nats - clear,
-                (true, true) => by.nats + clear,
-                (true, false) => (by.nats + clear).max(self.thresholds.better),
+            let more = if !usual || added.is_empty() {
+                by.nats - clear
+            } else if self.gains_again(refused, last) {
+                by.nats + clear
+            } else {
+                (by.nats + clear).max(self.thresholds.better)
             };
             (usual || !explains).then_some((refused, refusal, by, usual, more))
         });
