@@ -15,6 +15,7 @@ mod race;
 mod rivals;
 mod shape;
 mod simpler;
+mod unseen;
 mod usual;
 
 use std::collections::BTreeSet;

@@ -7,16 +7,12 @@
 //! nothing without them. Effects that the refused model has, too, stay, unless it goes on from all of them and what it does
 //! beyond them is the greater part: then they are a smaller part of something else. And where nothing else was found, but a
 //! refused model foretells what the base errs beyond the sensors, something is missing.
-//!
-//! What every system has, too little to be seen (a contact that gives less than a count), takes effects without doing more
-//! than they do, and is nothing that is missing. What one look refused, the next one asks, too.
+//! What one look refused, the next one asks, too.
 
-use super::rivals::PROMISED;
-use super::{Climb, Costs, STEPS, Search};
+use super::{Climb, STEPS, Search};
 use crate::ahead::compare::Difference;
-use crate::ahead::found::{Found, leaves_most};
+use crate::ahead::found::leaves_most;
 use crate::ahead::node::Node;
-use crate::ahead::screen::screen;
 use crate::family::Fitted;
 use crate::report::{Outcome, Reason, Refusal, Remains};
 
@@ -103,39 +99,6 @@ impl Search<'_> {
         Some(most.0.model.clone())
     }
 
-    /// Asks what every system has, too little of it to be seen, in the place of each effect that would be told, or of all
-    /// that was refused: it may do as much, and the search need not have come by it.
-    pub(super) fn ask_unseen(&mut self, climb: &mut Climb, last: &Node, costs: &Costs) {
-        let Some(term) = self.ahead.may_be_unseen() else { return };
-        let base = climb.base.clone();
-        let clear = self.thresholds.clear(self.comparison.compare(&base, last).nats);
-        let each = costs.iter().map(|(_, cost, without)| (without.clone(), cost.nats - clear));
-        let mut places: Vec<(Node, f64)> = each.collect();
-        if costs.is_empty() && !climb.refused.is_empty() {
-            places.push((base.clone(), self.thresholds.better));
-        }
-        for (from, least) in places {
-            if (self.stop)() || Found::is_in(&from.model.terms, term, self.family) {
-                continue;
-            }
-            let screened = screen(self.family, self.ahead, &from, &[term], false);
-            let promise = screened.promises.into_iter().next();
-            let promise = promise.filter(|promise| promise.gain >= PROMISED * least);
-            let Some(begun) = promise.and_then(|promise| self.begun(&promise, from.setting)) else {
-                continue;
-            };
-            let node = self.refit(&begun.model, begun.setting, STEPS.2);
-            if !self.ahead.is_unseen(&node.model, &base.model) {
-                continue;
-            }
-            let size = Self::added(&base, &node).len();
-            let (gain, refusal) = self.asked(&base, &from, &node, size);
-            if let Some(refusal) = refusal.filter(|_| gain.nats > self.thresholds.better) {
-                climb.refused.push((node, refusal));
-            }
-        }
-    }
-
     /// Asks a model that another look refused: that its own search may have ended beside it is no reason for a name.
     pub fn ask_again(&mut self, climb: &mut Climb, model: Fitted) {
         if (self.stop)() {
@@ -147,19 +110,6 @@ impl Search<'_> {
         if let Some(refusal) = refusal.filter(|_| gain.nats > self.thresholds.better) {
             climb.refused.push((node, refusal));
         }
-    }
-
-    /// Whether a model gains over another again and again.
-    fn gains_again(&self, from: &Node, to: &Node) -> bool {
-        self.comparison.compare(from, to).recurs_by_chance() <= self.thresholds.recurs()
-    }
-
-    /// Whether a refused model has what every system has, too little to be seen, beside effects of one or none of them,
-    /// and leaves no more: where it does as much, what few systems have need not be there.
-    fn is_usual_instead(&self, base: &Node, node: &Node, refused: &Node) -> bool {
-        let beyond = self.key(refused).difference(&self.key(node)).count();
-        let leaves_more = self.is_complete(node) && !self.is_complete(refused);
-        beyond == 1 && !leaves_more && self.ahead.is_unseen(&refused.model, &base.model)
     }
 
     /// Whether a refused model goes on from all effects of one that leaves something, and does the greater part of what
