@@ -341,7 +341,7 @@ impl<'a> Run<'a> {
         };
         let mut climb = search.begin(base, elsewhere);
         for model in self.refused {
-            search.ask_again(&mut climb, model.clone().within(family));
+            search.ask_again(&mut climb, &model.clone().within(family));
         }
         Pursuit { reading, search, climb }
     }

@@ -78,8 +78,8 @@ impl FrictionFamily {
             let values = self.values_in_full(model, model.terms.iter().position(|t| t == term)?)?;
             self.effect(*term)?.gives(&values, 0.0)
         };
-        let added = model.terms.iter().filter(|term| !base.terms.contains(term));
-        added.filter_map(gives).next().is_some() && self.give(model) <= self.count()
+        let mut added = model.terms.iter().filter(|term| !base.terms.contains(term));
+        added.find_map(gives).is_some() && self.give(model) <= self.count()
     }
 
     /// The most general contact.

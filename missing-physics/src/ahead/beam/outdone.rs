@@ -100,11 +100,11 @@ impl Search<'_> {
     }
 
     /// Asks a model that another look refused: that its own search may have ended beside it is no reason for a name.
-    pub fn ask_again(&mut self, climb: &mut Climb, model: Fitted) {
+    pub fn ask_again(&mut self, climb: &mut Climb, model: &Fitted) {
         if (self.stop)() {
             return;
         }
-        let node = self.refit(&model, climb.base.setting, STEPS.2);
+        let node = self.refit(model, climb.base.setting, STEPS.2);
         let size = Self::added(&climb.base, &node).len();
         let (gain, refusal) = self.asked(&climb.base.clone(), &climb.base.clone(), &node, size);
         if let Some(refusal) = refusal.filter(|_| gain.nats > self.thresholds.better) {

@@ -331,7 +331,7 @@ fn what_every_system_has_is_asked_in_the_place_of_a_name_though_the_search_passe
 
 #[test]
 fn what_another_look_refused_is_asked_again_where_it_does_clearly_more() {
-    let (wave, push): ((usize, &[f64]), (usize, &[f64])) = ((WAVE, &[0.05]), (PUSH, &[1e-4]));
+    let [wave, push]: [(usize, &[f64]); 2] = [(WAVE, &[0.05]), (PUSH, &[1e-4])];
     let mut plant = Plant::new(20, &[wave]);
     plant.none = Some(WAVE);
     let mut climb = climb(&plant, Vec::new());
@@ -339,14 +339,14 @@ fn what_another_look_refused_is_asked_again_where_it_does_clearly_more() {
     let last = node(&plant, &[push]);
     assert_eq!(search.refused_most(&climb, &last), None);
     let start = Plant::model(&[(WAVE, &[0.02])]);
-    search.ask_again(&mut climb, start.clone());
+    search.ask_again(&mut climb, &start);
     let model = search.refused_most(&climb, &last).unwrap();
     assert!((model.values[1] - 0.05).abs() < 0.005, "{:?}", model.values);
     assert_eq!(search.refused_most(&climb, &node(&plant, &[wave])), None);
     // What is an effect here is found here.
     plant.none = None;
     let mut climb = self::climb(&plant, Vec::new());
-    self::search(&plant, narrow()).ask_again(&mut climb, start);
+    self::search(&plant, narrow()).ask_again(&mut climb, &start);
     assert!(climb.refused.is_empty());
 }
 
