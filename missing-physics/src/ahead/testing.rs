@@ -89,8 +89,6 @@ pub struct Plant {
     pub none: Option<usize>,
     /// A term that every system has, too little of it here to be seen.
     pub unseen: Option<usize>,
-    /// A term and the flexible form of it.
-    pub bends: Option<(usize, usize)>,
     /// The effects whose amplitudes may be none.
     pub optional: Vec<usize>,
     /// The effects that are shapes of the rival.
@@ -203,7 +201,6 @@ impl Plant {
             time,
             none: None,
             unseen: None,
-            bends: None,
             optional: Vec::new(),
             kin: vec![PUSH],
             forms: vec![(BENT, WAVE)],
@@ -302,9 +299,6 @@ impl Ahead for Plant {
         term != BENT
     }
     fn flexible(&self, model: &Fitted, term: usize) -> Option<Fitted> {
-        if let Some((_, form)) = self.bends.filter(|(of, _)| *of == term) {
-            return Some(model.without(self, term).with(form, &[0.0]));
-        }
         let place = model.terms.iter().position(|t| *t == term && term == WAVE)?;
         let size = model.values[model.range(self, place).start];
         Some(model.without(self, WAVE).with(BENT, &[size, 0.0]))

@@ -80,28 +80,21 @@ impl Search<'_> {
         node
     }
 
-    /// The node, or the same with effects in their flexible forms where that is clearly better: all of them, or one, which
-    /// another that does not suit must not hide.
+    /// The node, or the same with effects in their flexible forms where that is clearly better.
     pub(super) fn shaped(&self, node: &Node) -> Node {
-        let flexible = |model: &Fitted, term: usize| self.ahead.flexible(model, term);
-        let effects = node.effects(self.family).into_iter();
-        let each: Vec<(usize, Fitted)> =
-            effects.filter_map(|term| Some((term, flexible(&node.model, term)?))).collect();
-        let all = each
-            .iter()
-            .fold(node.model.clone(), |model, (term, _)| flexible(&model, *term).unwrap_or(model));
-        let mut starts: Vec<Fitted> = each.into_iter().map(|(_, alone)| alone).collect();
-        if starts.len() > 1 {
-            starts.insert(0, all);
-        }
         let mut best = node.clone();
-        for start in starts {
-            if (self.stop)() {
-                break;
+        let mut start = node.model.clone();
+        let mut changed = false;
+        for term in node.effects(self.family) {
+            if let Some(flexible) = self.ahead.flexible(&start, term) {
+                start = flexible;
+                changed = true;
             }
-            let shaped = self.leapt(self.ahead, self.refit(&start, node.setting, STEPS.1));
-            if self.comparison.compare(&best, &shaped).nats > FORM {
-                best = shaped;
+        }
+        if changed && !(self.stop)() {
+            let flexible = self.leapt(self.ahead, self.refit(&start, node.setting, STEPS.1));
+            if self.comparison.compare(&best, &flexible).nats > FORM {
+                best = flexible;
             }
         }
         best

@@ -101,12 +101,3 @@ fn a_plain_form_comes_back_only_where_it_is_as_good_and_still_needed() {
     let (terms, decisions) = plain(&node(&plant, &[(WAVE, &[0.05])]));
     assert_eq!((terms, decisions[0].outcome), (vec![0, BENT], Outcome::OtherShape));
 }
-
-#[test]
-fn a_flexible_form_that_does_not_suit_hides_no_other_one() {
-    let hidden: [(usize, &[f64]); 2] = [(BENT, &[0.05, 0.05]), (BEAT, &[0.5])];
-    let mut plant = Plant::new(21, &hidden);
-    plant.bends = Some((BEAT, TWIN));
-    let plain = node(&plant, &[(WAVE, &[0.05]), (BEAT, &[0.5])]);
-    assert_eq!(search(&plant, narrow()).shaped(&plain).effects(&plant), [BEAT, BENT]);
-}
