@@ -161,10 +161,11 @@ impl Search<'_> {
         }
     }
 
-    /// What a nat that is gained over a model is in units of what the sensors make, where it errs less than that: a smaller
-    /// error is no better known than they are.
+    /// What a nat that is gained over a model is in units of what the sensors make, where it errs clearly less than that: a
+    /// smaller error is no better known than they are, and they are known to within what a model may err.
     fn of_the_sensors(&self, model: &Node) -> f64 {
-        if self.ahead.has_shares() { self.budget(model).min(1.0).powi(2) } else { 1.0 }
+        let square = self.thresholds.complete * self.budget(model).powi(2);
+        if self.ahead.has_shares() { square.min(1.0) } else { 1.0 }
     }
 
     /// The model without a term, refitted; what stood in the place of a term of the base leaves it to that one.

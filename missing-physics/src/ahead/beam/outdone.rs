@@ -44,7 +44,7 @@ impl Search<'_> {
             // What every system has need not do more, and gives way to what does more beyond doubt alone.
             let more = if !usual || added.is_empty() {
                 by.nats - clear
-            } else if self.gains_again(refused, last) {
+            } else if self.is_needed_beside(base, last, refused) {
                 by.nats + clear
             } else {
                 (by.nats + clear).max(self.thresholds.better)
@@ -121,7 +121,7 @@ impl Search<'_> {
     }
 
     /// Whether a model does the greater part of what it does to the squared error beyond what another one does.
-    fn does_most(&self, base: &Node, node: &Node, refused: &Node) -> bool {
+    pub(super) fn does_most(&self, base: &Node, node: &Node, refused: &Node) -> bool {
         let square = |node: &Node| self.budget(node).powi(2);
         square(node) - square(refused) > square(base) - square(node)
     }
@@ -137,10 +137,14 @@ impl Search<'_> {
 
     /// The same beyond the effects that both have.
     fn does_most_of_it(&self, base: &Node, node: &Node, refused: &Node) -> bool {
-        let others = self.key(refused);
+        self.does_most(&self.shared(base, node, refused), node, refused)
+    }
+
+    /// The base with the effects alone that two models have.
+    pub(super) fn shared(&self, base: &Node, node: &Node, other: &Node) -> Node {
+        let others = self.key(other);
         let mut both = Self::added(base, node);
         both.retain(|term| others.contains(&self.main(*term)));
-        let from = if both.is_empty() { base.clone() } else { self.only(base, node, &both) };
-        self.does_most(&from, node, refused)
+        if both.is_empty() { base.clone() } else { self.only(base, node, &both) }
     }
 }

@@ -44,16 +44,21 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a model gains over another again and again.
-    pub(super) fn gains_again(&self, from: &Node, to: &Node) -> bool {
-        self.comparison.compare(from, to).recurs_by_chance() <= self.thresholds.recurs()
+    /// Whether a model does more than one with what every system has in the place of an effect: again and again, or the
+    /// greater part of what it does (a limit of the force is reached now and then).
+    pub(super) fn is_needed_beside(&self, base: &Node, node: &Node, usual: &Node) -> bool {
+        let gain = self.comparison.compare(usual, node);
+        let again = gain.recurs_by_chance() <= self.thresholds.recurs();
+        again || self.does_most(&self.shared(base, node, usual), usual, node)
     }
 
     /// Whether a refused model has what every system has, too little to be seen, beside effects of one or none of them,
-    /// and leaves no more: where it does as much, what few systems have need not be there.
+    /// and leaves no more: where it does as much, what few systems have need not be there. Of a base that leaves something
+    /// it says nothing: something is missing there.
     pub(super) fn is_usual_instead(&self, base: &Node, node: &Node, refused: &Node) -> bool {
         let beyond = self.key(refused).difference(&self.key(node)).count();
         let leaves_more = self.is_complete(node) && !self.is_complete(refused);
-        beyond == 1 && !leaves_more && self.ahead.is_unseen(&refused.model, &base.model)
+        let beside = self.is_complete(base) && beyond == 1 && !leaves_more;
+        beside && self.ahead.is_unseen(&refused.model, &base.model)
     }
 }

@@ -130,7 +130,7 @@ fn what_errs_less_than_the_sensors_is_gained_in_their_units() {
     let (mut set, mut without) = (node(&plant, &[]), node(&plant, &[]));
     let better = narrow().better;
     for (times, nats, named) in
-        [(1.0, 1.01, true), (2.0, 1.01, true), (0.5, 3.9, false), (0.5, 4.1, true)]
+        [(0.9, 1.01, true), (2.0, 1.01, true), (0.5, 3.0, false), (0.5, 3.1, true)]
     {
         (set.scale, without.scale) = (0.4 * plant.budget(), times * plant.budget());
         let gain = Difference { nats: nats * better, error: 0.0, ranks: 9.0 };
