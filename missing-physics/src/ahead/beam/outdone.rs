@@ -9,7 +9,7 @@
 //! refused model foretells what the base errs beyond the sensors, something is missing.
 //! What one look refused, the next one asks, too.
 
-use super::{Climb, STEPS, Search};
+use super::{Climb, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::found::leaves_most;
 use crate::ahead::node::Node;
@@ -44,7 +44,7 @@ impl Search<'_> {
             // What every system has need not do more, and gives way to what does more beyond doubt alone.
             let more = if !usual || added.is_empty() {
                 by.nats - clear
-            } else if self.is_needed_beside(base, last, refused) {
+            } else if self.is_needed_beside(base, last, (refused, negative(by))) {
                 by.nats + clear
             } else {
                 (by.nats + clear).max(self.thresholds.better)

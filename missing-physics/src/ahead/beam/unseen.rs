@@ -6,6 +6,7 @@
 
 use super::rivals::PROMISED;
 use super::{Climb, Costs, STEPS, Search};
+use crate::ahead::compare::Difference;
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
 use crate::ahead::screen::screen;
@@ -44,10 +45,14 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a model does more than one with what every system has in the place of an effect: again and again, or the
+    /// Whether a model does more than one with what every system has in the place of an effect, over which it has a `gain`: again and again, or the
     /// greater part of what it does (a limit of the force is reached now and then).
-    pub(super) fn is_needed_beside(&self, base: &Node, node: &Node, usual: &Node) -> bool {
-        let gain = self.comparison.compare(usual, node);
+    pub(super) fn is_needed_beside(
+        &self,
+        base: &Node,
+        node: &Node,
+        (usual, gain): (&Node, Difference),
+    ) -> bool {
         let again = gain.recurs_by_chance() <= self.thresholds.recurs();
         again || self.does_most(&self.shared(base, node, usual), usual, node)
     }
