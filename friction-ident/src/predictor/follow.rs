@@ -1,5 +1,7 @@
 //! Models along a recording, sample by sample.
 
+use std::ptr;
+
 use super::gain::Gain;
 use super::strips::Strip;
 use super::{LATE_STEPS, MOST_STEPS, MOST_STEPS_OF_TWO, Predictor, STEP, STEP_OF_TWO, VECTOR};
@@ -21,21 +23,29 @@ pub(super) struct Step<'a> {
 }
 
 /// Shares of an error that go to the position and to the velocity (1/s), for each model.
-struct Shares {
+struct Shares<'a> {
+    gains: Vec<&'a Gain>,
+    /// Whether all models are at one setting, as those that differ by a step of a parameter are.
+    alike: bool,
     position: Vec<f64>,
     velocity: Vec<f64>,
 }
 
-impl Shares {
-    fn new(count: usize) -> Self {
-        Self { position: vec![0.0; count], velocity: vec![0.0; count] }
+impl<'a> Shares<'a> {
+    fn new(gains: Vec<&'a Gain>) -> Self {
+        let (count, alike) = (gains.len(), gains.windows(2).all(|two| ptr::eq(two[0], two[1])));
+        Self { gains, alike, position: vec![0.0; count], velocity: vec![0.0; count] }
     }
 
     /// Those of a sample.
-    fn set(&mut self, gains: &[&Gain], n: usize) {
-        for ((position, velocity), gain) in
-            self.position.iter_mut().zip(&mut self.velocity).zip(gains)
-        {
+    fn set(&mut self, n: usize) {
+        if self.alike {
+            self.position.fill(self.gains[0].position[n]);
+            self.velocity.fill(self.gains[0].velocity[n]);
+            return;
+        }
+        let shares = self.position.iter_mut().zip(&mut self.velocity);
+        for ((position, velocity), gain) in shares.zip(&self.gains) {
             (*position, *velocity) = (gain.position[n], gain.velocity[n]);
         }
     }
@@ -48,8 +58,8 @@ vectorised! {
         velocity: &[f64],
         rest_speed: f64,
         most: f64,
-        moving: &Shares,
-        at_rest: &Shares,
+        moving: &Shares<'_>,
+        at_rest: &Shares<'_>,
         dx: &mut [f64],
         dv: &mut [f64],
     ) {
@@ -118,8 +128,8 @@ impl Predictor {
         }
         let mut plants = Plants::new(&models)?;
         let rungs = self.ladder.len();
-        let gain: Vec<&Gain> = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
-        let at_rest: Vec<&Gain> =
+        let gain = trials.iter().map(|(_, setting)| self.gain(*setting)).collect();
+        let at_rest =
             trials.iter().map(|(_, s)| self.gain_of(if *s < rungs { *s } else { 0 })).collect();
         let (step, most) = if two { (STEP_OF_TWO, MOST_STEPS_OF_TWO) } else { (STEP, MOST_STEPS) };
         let step = step.max(self.interval / most);
@@ -128,7 +138,7 @@ impl Predictor {
         let all = models.len();
         let (mut length, mut command) = (vec![0.0; all], vec![0.0; all]);
         let (mut dx, mut dv, mut errors) = (vec![0.0; all], vec![0.0; all], vec![0.0; count]);
-        let (mut moving, mut still) = (Shares::new(count), Shares::new(count));
+        let (mut moving, mut still) = (Shares::new(gain), Shares::new(at_rest));
         // Lanes that fill a vector go with the last strip.
         let lanes = |s: usize| s * count..if s + 1 < strips.len() { (s + 1) * count } else { all };
         for (s, strip) in strips.iter().enumerate() {
@@ -157,8 +167,8 @@ impl Predictor {
                 let n = at(strip) + 1;
                 let told = strip.from + j + 1 == n && strip.tells.contains(&n);
                 let lanes = s * count..(s + 1) * count;
-                moving.set(&gain, n);
-                still.set(&at_rest, n);
+                moving.set(n);
+                still.set(n);
                 let velocity = &velocity[lanes.clone()];
                 let (dx, dv) = (&mut dx[lanes.clone()], &mut dv[lanes.clone()]);
                 error(n, &shown[lanes], &mut errors);

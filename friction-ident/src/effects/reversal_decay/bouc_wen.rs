@@ -1,6 +1,6 @@
 //! Hysteresis of another shape: how sharply it bends, and where on its way back.
 
-use super::hysteresis::{Hysteresis, LENGTH, SHOWS, SIZE, follow, turn};
+use super::hysteresis::{Hysteresis, LENGTH, SHOWS, SIZE, slides_to};
 use super::within_a_count;
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
@@ -9,7 +9,7 @@ use crate::effects::{
     About, AsFound, Begun, CDynamics, Effect, Memory, Motion, Parameter, Parameters, Past,
     Recalled, Refused, Slot, Taken,
 };
-use crate::simd::{exp, ln, sign, vectorised};
+use crate::simd::{exp, limited, ln, sign, vectorised};
 
 /// `level += F_h h s` with `l dh = (1 - |h|^n (1 - beta + beta sgn(h dx))) dx`: on the way out it bends the more sharply the
 /// greater `n`; on the way back it has the slope of its begin until it is gone with `beta` 1/2, twice that at first with 1,
@@ -108,9 +108,7 @@ fn bent(share: f64, way: f64, n: f64, beta: f64) -> f64 {
     let (slope, bend) = slope(share, n, beta);
     let x = bend * way;
     let grown = if x.abs() < 1e-6 { way } else { (exp(x) - 1.0) / bend };
-    let bent = share + slope * grown;
-    let bent = if bent > 1.0 { 1.0 } else { bent };
-    if bent < -1.0 { -1.0 } else { bent }
+    limited(share + slope * grown, 1.0)
 }
 
 /// The states of [`Hysteresis`].
@@ -140,16 +138,48 @@ impl Memory for BoucWen {
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        let turned = |i: usize, share, way| bent(share, way, p.get(2)[i], p.get(3)[i]);
-        turn(p, taken, state, turned);
+        let (share, direction) = state.split_at_mut(taken.sliding.len());
+        turn(p, taken.sliding, taken.displacement, share, direction);
     }
 
     fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
-        follow(p, displacement, state, |i, share| slope(share, p.get(2)[i], p.get(3)[i]).0);
+        let (share, direction) = state.split_at_mut(displacement.len());
+        follow(p, displacement, direction, share);
     }
 }
 
 vectorised! {
+    /// Takes a piece into the share and the direction.
+    fn turn(
+        p: Parameters<'_>,
+        sliding: &[f64],
+        moved: &[f64],
+        share: &mut [f64],
+        direction: &mut [f64],
+    ) {
+        let n = sliding.len();
+        let (length, sharply, beta) = (&p.get(1)[..n], &p.get(2)[..n], &p.get(3)[..n]);
+        let (moved, share, direction) = (&moved[..n], &mut share[..n], &mut direction[..n]);
+        for i in 0..n {
+            let to = slides_to(sliding[i], moved[i]);
+            let turned = bent(to * share[i], moved[i].abs() / length[i], sharply[i], beta[i]);
+            share[i] = if to == 0.0 { share[i] } else { to * turned };
+            direction[i] = if to == 0.0 { direction[i] } else { to };
+        }
+    }
+
+    /// Follows an observer along the branch that it is on, either way, as noise is no reversal.
+    fn follow(p: Parameters<'_>, displacement: &[f64], direction: &[f64], share: &mut [f64]) {
+        let n = share.len();
+        let (length, sharply, beta) = (&p.get(1)[..n], &p.get(2)[..n], &p.get(3)[..n]);
+        let (displacement, direction) = (&displacement[..n], &direction[..n]);
+        for i in 0..n {
+            let slope = slope(direction[i] * share[i], sharply[i], beta[i]).0;
+            let moved = direction[i].abs() * displacement[i];
+            share[i] = limited(share[i] + slope * moved / length[i], 1.0);
+        }
+    }
+
     fn recall(
         p: Parameters<'_>,
         begin: &[f64],

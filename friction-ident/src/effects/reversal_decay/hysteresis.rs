@@ -8,7 +8,7 @@ use crate::effects::{
     About, AsFound, Begun, CDynamics, Came, Effect, Memory, Motion, Parameter, Parameters, Past,
     Recalled, Refused, Slot, Taken,
 };
-use crate::simd::{exp, sign, vectorised};
+use crate::simd::{exp, limited, sign, vectorised};
 
 /// `level += F_h h s` with `l dh = (s - h) |dx|`: a force beside the friction of the axis that turns around over a distance
 /// after every reversal, from wherever it had come to (after a long way `F_h - 2 F_h exp(-d/l)`: a reversal decay).
@@ -108,48 +108,55 @@ impl Memory for Hysteresis {
     }
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
-        turn(p, taken, state, |_, share, way| 1.0 + (share - 1.0) * (-way).exp());
+        let (share, direction) = state.split_at_mut(taken.sliding.len());
+        turn(p, taken.sliding, taken.displacement, share, direction);
     }
 
     fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
-        follow(p, displacement, state, |_, share| 1.0 - share);
+        let (share, direction) = state.split_at_mut(displacement.len());
+        follow(p, displacement, direction, share);
     }
 }
 
-/// Takes a piece into the state: `turned` is the share in the direction of motion after a way in units of the length.
-pub(super) fn turn(
-    p: Parameters<'_>,
-    taken: &Taken<'_>,
-    state: &mut [f64],
-    turned: impl Fn(usize, f64, f64) -> f64,
-) {
-    let (share, direction) = state.split_at_mut(taken.sliding.len());
-    for (i, moved) in taken.displacement.iter().enumerate() {
-        // What an axis at rest seems to move is noise, or the vibration of its contact.
-        if taken.sliding[i] > 0.0 && *moved != 0.0 {
-            let to = moved.signum();
-            share[i] = to * turned(i, to * share[i], moved.abs() / p.get(1)[i]);
-            direction[i] = to;
-        }
-    }
-}
-
-/// Follows an observer along the branch that it is on, either way, as noise is no reversal: `slope` is that of the share
-/// in the direction of motion.
-pub(super) fn follow(
-    p: Parameters<'_>,
-    displacement: &[f64],
-    state: &mut [f64],
-    slope: impl Fn(usize, f64) -> f64,
-) {
-    let (share, direction) = state.split_at_mut(displacement.len());
-    for (i, dx) in displacement.iter().enumerate() {
-        let slope = direction[i].abs() * slope(i, direction[i] * share[i]);
-        share[i] = (share[i] + slope * dx / p.get(1)[i]).clamp(-1.0, 1.0);
-    }
+/// Which way a piece turns the force, 0 for none: what an axis at rest seems to move is noise, or the vibration of its
+/// contact.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(super) fn slides_to(sliding: f64, moved: f64) -> f64 {
+    if sliding > 0.0 { sign(moved) } else { 0.0 }
 }
 
 vectorised! {
+    /// Takes a piece into the share and the direction.
+    fn turn(
+        p: Parameters<'_>,
+        sliding: &[f64],
+        moved: &[f64],
+        share: &mut [f64],
+        direction: &mut [f64],
+    ) {
+        let n = sliding.len();
+        let (length, moved) = (&p.get(1)[..n], &moved[..n]);
+        let (share, direction) = (&mut share[..n], &mut direction[..n]);
+        for i in 0..n {
+            let to = slides_to(sliding[i], moved[i]);
+            let turned = 1.0 + (to * share[i] - 1.0) * exp(-moved[i].abs() / length[i]);
+            share[i] = if to == 0.0 { share[i] } else { to * turned };
+            direction[i] = if to == 0.0 { direction[i] } else { to };
+        }
+    }
+
+    /// Follows an observer along the branch that it is on, either way, as noise is no reversal.
+    fn follow(p: Parameters<'_>, displacement: &[f64], direction: &[f64], share: &mut [f64]) {
+        let n = share.len();
+        let (length, displacement, direction) =
+            (&p.get(1)[..n], &displacement[..n], &direction[..n]);
+        for i in 0..n {
+            let slope = direction[i].abs() * (1.0 - direction[i] * share[i]);
+            share[i] = limited(share[i] + slope * displacement[i] / length[i], 1.0);
+        }
+    }
+
     fn recall(
         p: Parameters<'_>,
         begin: &[f64],
