@@ -27,6 +27,11 @@ pub fn remark(remark: &Remark) -> String {
             "{of} follows another law here, {law}, which leaves next to nothing of it: it stands in the base model, which \
              gains {nats:.0} nats by it, and counts as no effect that is missing. Put it in the place of {of} in your model."
         ),
+        Remark::OfReading { effect, refusal: why, nats } => format!(
+            "{effect} belongs to how the recording is read, stands in the base model, which gains {nats:.0} nats by it, and \
+             counts as no effect that is missing: {}",
+            refusal(why)
+        ),
         Remark::Unconfirmed { share } => format!(
             "Time ran out: what is said was found on parts that are {} of what was looked at, and was not asked of all of it.",
             percent(*share)
@@ -108,7 +113,7 @@ pub fn disagreement(between: &Disagreement) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use missing_physics::report::NoCause;
+    use missing_physics::report::{NamedValue, NoCause, Refusal};
 
     #[test]
     fn what_is_not_the_cause_says_what_it_would_do_and_why_it_is_none() {
@@ -132,6 +137,20 @@ mod tests {
         let told = remark(&Remark::OtherLaw { of, law, nats: 312.4 });
         assert!(told.contains("shear-thinning") && told.contains("312 nats"), "{told}");
         assert!(told.ends_with("Put it in the place of coulomb in your model."), "{told}");
+    }
+
+    #[test]
+    fn what_belongs_to_the_reading_is_told_with_how_late_it_is() {
+        let refusal = Refusal::NotThatEffect {
+            effect: "input-delay".into(),
+            value: NamedValue { name: "lateness".into(), value: 4.8e-4, unit: "s".into() },
+            limit: 2.2e-3,
+            meaning: "what the force does between two samples comes as late".into(),
+        };
+        let told =
+            remark(&Remark::OfReading { effect: "input-delay".into(), refusal, nats: 312.4 });
+        assert!(told.starts_with("input-delay belongs to how the recording is read"), "{told}");
+        assert!(told.contains("312 nats") && told.contains("480 µs"), "{told}");
     }
 
     #[test]

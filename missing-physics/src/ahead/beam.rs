@@ -232,6 +232,7 @@ impl<'a> Search<'a> {
             // What took the place of one effect, or is left of a set that another one has gone from, may leave an effect to a
             // simpler one, too; what leads back does not.
             if rival.is_none()
+                && (!self.all_or_nothing || self.is_complete(&needed))
                 && simplified.len() < ROUNDS
                 && simplified.insert(needed.model.terms.clone())
                 && let Some(simpler) = self.simplified(&mut climb, &needed, &costs)

@@ -38,9 +38,10 @@ impl Sought<'_> {
         found.added.is_empty().then(|| part.share())
     }
 
-    /// Whether so few effects leave nothing that no other look can do with less.
+    /// Whether so few effects leave nothing that no other look can do with less: those that every system has hide none.
     pub(super) fn is_pair(&self) -> bool {
-        self.found.complete && self.found.added.len() <= PAIR
+        let added = self.found.added.iter().filter(|term| !self.reading.family.is_usual(**term));
+        self.found.complete && added.count() <= PAIR
     }
 
     /// Whether it leaves nothing where the other does, or does so with fewer effects that do as much.

@@ -75,6 +75,16 @@ pub enum Remark {
         /// What the base model gains by it, nats.
         nats: f64,
     },
+    /// What makes the input late is no more than what it does between two samples may: it belongs to how the recording is
+    /// read, stands in the base model and counts as no effect that is missing.
+    OfReading {
+        /// The effect that stands for it.
+        effect: String,
+        /// How late, and how late the reading may be.
+        refusal: Refusal,
+        /// What the base model gains by it, nats.
+        nats: f64,
+    },
     /// Effects come nearest and are not the cause.
     NotTheCause {
         /// The effects.

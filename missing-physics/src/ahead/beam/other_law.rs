@@ -37,18 +37,20 @@ impl Search<'_> {
         Some(with)
     }
 
-    /// The base model with an effect of the last one that stands for how the recording is read, where others were found beside
-    /// it: without it these would be judged by what the reading leaves.
+    /// The base model with an effect of the last one that stands for how the recording is read: without it what else was
+    /// found, or what is left where nothing was, would be judged by what the reading leaves.
     pub(super) fn with_reading(&mut self, climb: &Climb, last: &Node) -> Option<Node> {
         let base = &climb.base;
-        if Self::added(base, last).len() < 2 || (self.stop)() {
+        if Self::added(base, last).is_empty() || (self.stop)() {
             return None;
         }
         let (term, refusal) = as_read(self.family, self.ahead, base, last)?;
         let with = self.only(base, last, &[term]);
         let by = self.comparison.compare(base, &with);
-        self.tell_refused(base, &with, &refusal);
-        self.note(1, &with, base, by, Outcome::Added, Some(Reason::Refused { refusal }));
+        let because = Some(Reason::Refused { refusal: refusal.clone() });
+        self.note(1, &with, base, by, Outcome::Added, because);
+        let effect = self.family.terms()[term].name.clone();
+        self.remarks.push(Remark::OfReading { effect, refusal, nats: self.in_full(by.nats) });
         Some(with)
     }
 

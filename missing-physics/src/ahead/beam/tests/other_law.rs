@@ -81,7 +81,7 @@ fn of_a_usual_effect_that_the_base_has_none_of_nothing_is_left() {
 }
 
 #[test]
-fn what_stands_for_the_reading_beside_an_effect_stands_in_the_base() {
+fn what_stands_for_the_reading_stands_in_the_base() {
     let found = |hidden: &[(usize, &[f64])]| {
         let mut plant = Plant::new(21, hidden);
         plant.read = Some(PUSH);
@@ -97,12 +97,12 @@ fn what_stands_for_the_reading_beside_an_effect_stands_in_the_base() {
     assert_eq!(both.added, [WAVE]);
     assert_eq!(both.base.model.terms, [DRIVE, PUSH]);
     assert!(both.complete && both.rival.is_none(), "{:?}", both.rival);
-    let [Remark::NotNamed { effects, .. }] = &both.remarks[..] else {
-        panic!("{:?}", both.remarks)
-    };
-    assert_eq!(effects, &["push"]);
-    // Alone it is what the base leaves.
     let alone = found(&[read]);
-    assert!(alone.added.is_empty());
-    assert_eq!(alone.base.model.terms, [DRIVE]);
+    assert!(alone.added.is_empty() && alone.complete);
+    assert_eq!(alone.base.model.terms, [DRIVE, PUSH]);
+    // The wave hides most of what it gains.
+    for (told, least) in [(both.remarks, 0.0), (alone.remarks, 10.0)] {
+        let [Remark::OfReading { effect, nats, .. }] = &told[..] else { panic!("{told:?}") };
+        assert!(effect == "push" && *nats > least, "{told:?}");
+    }
 }
