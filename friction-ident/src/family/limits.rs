@@ -217,7 +217,10 @@ impl Limits {
         let lower = if linear { low } else { from.max(low.min(to)) };
         let upper = to.min(high).max(lower * 1.01);
         let middle = if linear { 0.5 * (lower + upper) } else { (lower * upper).sqrt() };
+        // A logarithm that begins at 0 moves by its unit: a fit measures its steps by the start.
+        let is_log = linear && parameter.quantity == Quantity::One;
         let typical = parameter.typical(self.axis);
+        let typical = if is_log && typical == 0.0 { 1.0 } else { typical };
         let start = if (lower..=upper).contains(&typical) { typical } else { middle };
         (lower, upper, start)
     }
@@ -307,6 +310,14 @@ mod tests {
         for count in [1e-9, 1e-5, 2e-4] {
             assert!((most(count) / 200.0 - 1.0).abs() < 0.1, "{count}: {}", most(count));
         }
+    }
+
+    #[test]
+    fn the_shares_of_a_free_contact_have_a_size_by_which_they_are_moved() {
+        let family = family();
+        let free = family.terms.iter().find(|term| term.name == "presliding:free").unwrap();
+        let weights = free.parameters.iter().filter(|p| p.name.starts_with("w_"));
+        assert_eq!(weights.filter(|p| p.start == 1.0).count(), 4);
     }
 
     #[test]

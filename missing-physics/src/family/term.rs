@@ -26,7 +26,8 @@ pub struct TermParameter {
     pub upper: f64,
     /// Scale on which it is searched.
     pub scale: Scale,
-    /// Where a search starts; for an amplitude also its typical size.
+    /// Where a search starts; for what is searched on a linear scale also its typical size. A fit measures its steps by it, or by
+    /// the value where that is larger: what has 0 for both stays where it is.
     pub start: f64,
 }
 
