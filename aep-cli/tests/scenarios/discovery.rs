@@ -175,7 +175,7 @@ fn what_every_drive_has_is_named_before_what_varies_it() {
     let desk = Desk::new();
     // Without a friction level a drift of it gains more than the level.
     for (base, names) in
-        [("viscous,offset", "stribeck, coulomb"), ("offset", "viscous, stribeck, coulomb")]
+        [("viscous,offset", "stribeck, coulomb"), ("offset", "viscous, coulomb, stribeck")]
     {
         let run = desk.aep(&format!("discover --base {base} --time-limit none --json out.json"));
         // A drift without end is the level, and no alternative to it.
