@@ -217,10 +217,10 @@ impl Limits {
         let lower = if linear { low } else { from.max(low.min(to)) };
         let upper = to.min(high).max(lower * 1.01);
         let middle = if linear { 0.5 * (lower + upper) } else { (lower * upper).sqrt() };
-        // A logarithm that begins at 0 moves by its unit: a fit measures its steps by the start.
-        let is_log = linear && parameter.quantity == Quantity::One;
+        // A number that begins at 0 (a logarithm) moves by its unit: a fit measures its steps by the start.
+        let is_number = linear && parameter.quantity == Quantity::One;
         let typical = parameter.typical(self.axis);
-        let typical = if is_log && typical == 0.0 { 1.0 } else { typical };
+        let typical = if is_number && typical == 0.0 { 1.0 } else { typical };
         let start = if (lower..=upper).contains(&typical) { typical } else { middle };
         (lower, upper, start)
     }

@@ -1,6 +1,6 @@
 //! Hysteresis of another shape: how sharply it bends, and where on its way back.
 
-use super::hysteresis::{Hysteresis, LENGTH, SHOWS, SIZE, slides_to};
+use super::hysteresis::{Branch, Hysteresis, LENGTH, SHOWS, SIZE, follow, turn};
 use super::within_a_count;
 use crate::axis::Quantity;
 use crate::effects::c_dynamics::PAST;
@@ -111,6 +111,34 @@ fn bent(share: f64, way: f64, n: f64, beta: f64) -> f64 {
     limited(share + slope * grown, 1.0)
 }
 
+/// `n` and `beta` of the lanes.
+struct Bent<'a> {
+    sharply: &'a [f64],
+    beta: &'a [f64],
+}
+
+impl<'a> Bent<'a> {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn new(p: Parameters<'a>, lanes: usize) -> Self {
+        Self { sharply: &p.get(2)[..lanes], beta: &p.get(3)[..lanes] }
+    }
+}
+
+impl Branch for Bent<'_> {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn turned(&self, lane: usize, share: f64, way: f64) -> f64 {
+        bent(share, way, self.sharply[lane], self.beta[lane])
+    }
+
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn slope(&self, lane: usize, share: f64) -> f64 {
+        slope(share, self.sharply[lane], self.beta[lane]).0
+    }
+}
+
 /// The states of [`Hysteresis`].
 impl Memory for BoucWen {
     fn states(&self) -> usize {
@@ -139,45 +167,28 @@ impl Memory for BoucWen {
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
         let (share, direction) = state.split_at_mut(taken.sliding.len());
-        turn(p, taken.sliding, taken.displacement, share, direction);
+        turn_around(p, taken.sliding, taken.displacement, share, direction);
     }
 
     fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
         let (share, direction) = state.split_at_mut(displacement.len());
-        follow(p, displacement, direction, share);
+        follow_on(p, displacement, direction, share);
     }
 }
 
 vectorised! {
-    /// Takes a piece into the share and the direction.
-    fn turn(
+    fn turn_around(
         p: Parameters<'_>,
         sliding: &[f64],
         moved: &[f64],
         share: &mut [f64],
         direction: &mut [f64],
     ) {
-        let n = sliding.len();
-        let (length, sharply, beta) = (&p.get(1)[..n], &p.get(2)[..n], &p.get(3)[..n]);
-        let (moved, share, direction) = (&moved[..n], &mut share[..n], &mut direction[..n]);
-        for i in 0..n {
-            let to = slides_to(sliding[i], moved[i]);
-            let turned = bent(to * share[i], moved[i].abs() / length[i], sharply[i], beta[i]);
-            share[i] = if to == 0.0 { share[i] } else { to * turned };
-            direction[i] = if to == 0.0 { direction[i] } else { to };
-        }
+        turn(p.get(1), (sliding, moved), share, direction, &Bent::new(p, sliding.len()));
     }
 
-    /// Follows an observer along the branch that it is on, either way, as noise is no reversal.
-    fn follow(p: Parameters<'_>, displacement: &[f64], direction: &[f64], share: &mut [f64]) {
-        let n = share.len();
-        let (length, sharply, beta) = (&p.get(1)[..n], &p.get(2)[..n], &p.get(3)[..n]);
-        let (displacement, direction) = (&displacement[..n], &direction[..n]);
-        for i in 0..n {
-            let slope = slope(direction[i] * share[i], sharply[i], beta[i]).0;
-            let moved = direction[i].abs() * displacement[i];
-            share[i] = limited(share[i] + slope * moved / length[i], 1.0);
-        }
+    fn follow_on(p: Parameters<'_>, displacement: &[f64], direction: &[f64], share: &mut [f64]) {
+        follow(p.get(1), displacement, direction, share, &Bent::new(p, share.len()));
     }
 
     fn recall(

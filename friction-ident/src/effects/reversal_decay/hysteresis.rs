@@ -109,52 +109,92 @@ impl Memory for Hysteresis {
 
     fn remember(&self, p: Parameters<'_>, taken: &Taken<'_>, state: &mut [f64]) {
         let (share, direction) = state.split_at_mut(taken.sliding.len());
-        turn(p, taken.sliding, taken.displacement, share, direction);
+        turn_around(p, taken.sliding, taken.displacement, share, direction);
     }
 
     fn correct(&self, p: Parameters<'_>, displacement: &[f64], state: &mut [f64]) {
         let (share, direction) = state.split_at_mut(displacement.len());
-        follow(p, displacement, direction, share);
+        follow_on(p, displacement, direction, share);
     }
 }
 
-/// Which way a piece turns the force, 0 for none: what an axis at rest seems to move is noise, or the vibration of its
-/// contact.
+/// How the share in the direction of motion goes, in the lanes.
+pub(super) trait Branch {
+    /// What it is after a way in units of the length.
+    fn turned(&self, lane: usize, share: f64, way: f64) -> f64;
+
+    /// Its slope over that way.
+    fn slope(&self, lane: usize, share: f64) -> f64;
+}
+
+impl Branch for Hysteresis {
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn turned(&self, _lane: usize, share: f64, way: f64) -> f64 {
+        1.0 + (share - 1.0) * exp(-way)
+    }
+
+    #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+    #[inline(always)]
+    fn slope(&self, _lane: usize, share: f64) -> f64 {
+        1.0 - share
+    }
+}
+
+/// Takes a piece into the share and the direction.
 #[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
 #[inline(always)]
-pub(super) fn slides_to(sliding: f64, moved: f64) -> f64 {
-    if sliding > 0.0 { sign(moved) } else { 0.0 }
+pub(super) fn turn(
+    length: &[f64],
+    (sliding, moved): (&[f64], &[f64]),
+    share: &mut [f64],
+    direction: &mut [f64],
+    branch: &impl Branch,
+) {
+    let n = length.len();
+    let (sliding, moved) = (&sliding[..n], &moved[..n]);
+    let (share, direction) = (&mut share[..n], &mut direction[..n]);
+    for i in 0..n {
+        // What an axis at rest seems to move is noise, or the vibration of its contact.
+        let to = if sliding[i] > 0.0 { sign(moved[i]) } else { 0.0 };
+        let turned = branch.turned(i, to * share[i], moved[i].abs() / length[i]);
+        share[i] = if to == 0.0 { share[i] } else { to * turned };
+        direction[i] = if to == 0.0 { direction[i] } else { to };
+    }
+}
+
+/// Follows an observer along the branch that it is on, either way, as noise is no reversal.
+#[expect(clippy::inline_always, reason = "it must be compiled anew for each instruction set")]
+#[inline(always)]
+pub(super) fn follow(
+    length: &[f64],
+    displacement: &[f64],
+    direction: &[f64],
+    share: &mut [f64],
+    branch: &impl Branch,
+) {
+    let n = length.len();
+    let (displacement, direction) = (&displacement[..n], &direction[..n]);
+    let share = &mut share[..n];
+    for i in 0..n {
+        let slope = direction[i].abs() * branch.slope(i, direction[i] * share[i]);
+        share[i] = limited(share[i] + slope * displacement[i] / length[i], 1.0);
+    }
 }
 
 vectorised! {
-    /// Takes a piece into the share and the direction.
-    fn turn(
+    fn turn_around(
         p: Parameters<'_>,
         sliding: &[f64],
         moved: &[f64],
         share: &mut [f64],
         direction: &mut [f64],
     ) {
-        let n = sliding.len();
-        let (length, moved) = (&p.get(1)[..n], &moved[..n]);
-        let (share, direction) = (&mut share[..n], &mut direction[..n]);
-        for i in 0..n {
-            let to = slides_to(sliding[i], moved[i]);
-            let turned = 1.0 + (to * share[i] - 1.0) * exp(-moved[i].abs() / length[i]);
-            share[i] = if to == 0.0 { share[i] } else { to * turned };
-            direction[i] = if to == 0.0 { direction[i] } else { to };
-        }
+        turn(p.get(1), (sliding, moved), share, direction, &Hysteresis);
     }
 
-    /// Follows an observer along the branch that it is on, either way, as noise is no reversal.
-    fn follow(p: Parameters<'_>, displacement: &[f64], direction: &[f64], share: &mut [f64]) {
-        let n = share.len();
-        let (length, displacement, direction) =
-            (&p.get(1)[..n], &displacement[..n], &direction[..n]);
-        for i in 0..n {
-            let slope = direction[i].abs() * (1.0 - direction[i] * share[i]);
-            share[i] = limited(share[i] + slope * displacement[i] / length[i], 1.0);
-        }
+    fn follow_on(p: Parameters<'_>, displacement: &[f64], direction: &[f64], share: &mut [f64]) {
+        follow(p.get(1), displacement, direction, share, &Hysteresis);
     }
 
     fn recall(

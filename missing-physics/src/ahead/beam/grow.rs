@@ -140,7 +140,7 @@ impl Search<'_> {
     }
 
     /// Tells that an effect is none: once, beside whichever base model.
-    pub(super) fn tell_refused(&mut self, base: &Node, child: &Node, refusal: &Refusal) {
+    fn tell_refused(&mut self, base: &Node, child: &Node, refusal: &Refusal) {
         let mut added = child.effects(self.family);
         added.retain(|term| !base.model.terms.contains(term));
         let effects = self.named(&added);

@@ -45,8 +45,8 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a model does more than one with what every system has in the place of an effect, over which it has a `gain`: again and again, or the
-    /// greater part of what it does (a limit of the force is reached now and then).
+    /// Whether a model does more than one with what every system has in the place of an effect, over which it has a `gain`:
+    /// again and again, or the greater part of what it does (a limit of the force is reached now and then).
     pub(super) fn is_needed_beside(
         &self,
         base: &Node,
