@@ -20,6 +20,9 @@ pub fn reason(decision: &Decision) -> Option<String> {
             "it gains next to rest, where a contact holds, and too little where the axis moves fast"
                 .to_owned()
         }
+        Reason::Colour => {
+            "it rings no more than a noise that the errors before each sample foretell".to_owned()
+        }
         Reason::Foretold => "the errors before each sample foretell as much".to_owned(),
         Reason::Chance => "chance gains as much".to_owned(),
         Reason::PlainForm => "the plain form".to_owned(),

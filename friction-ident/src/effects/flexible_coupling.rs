@@ -86,7 +86,7 @@ impl Effect for FlexibleCoupling {
     }
 
     /// Both bodies answer the force and swing while the axis slides.
-    fn acts_in_motion(&self) -> bool {
+    fn rings(&self) -> bool {
         true
     }
 

@@ -158,8 +158,9 @@ pub trait Effect: Sync + Send {
         &[]
     }
 
-    /// Whether it acts wherever the axis moves, at any speed: what would gain next to rest alone is a contact.
-    fn acts_in_motion(&self) -> bool {
+    /// Whether it rings wherever the axis moves, at any speed: what would gain next to rest alone is a contact, what the
+    /// errors foretell themselves a noise.
+    fn rings(&self) -> bool {
         false
     }
 

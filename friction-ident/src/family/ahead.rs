@@ -239,7 +239,7 @@ impl Ahead for View<'_> {
     }
 
     fn in_motion(&self, term: usize) -> Option<&[bool]> {
-        self.family.effect(term)?.acts_in_motion().then_some(&self.ahead.fast)
+        self.family.effect(term)?.rings().then_some(&self.ahead.fast)
     }
 
     fn faults(&self) -> Option<Fault> {

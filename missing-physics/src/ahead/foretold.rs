@@ -25,6 +25,12 @@ pub fn is_foretold(ahead: &dyn Ahead, from: &Node, to: &Node, nats: f64, better:
     within && nats > 0.0 && gain(ahead, from, to) < better.min(SHARE * nats)
 }
 
+/// Whether a model with an effect that rings gains less than `better` over one without it, whatever that errs, once the
+/// errors of either are foretold: a noise of a colour rings, too.
+pub fn is_colour(ahead: &dyn Ahead, from: &Node, to: &Node, better: f64) -> bool {
+    gain(ahead, from, to) < better
+}
+
 /// Whether a model that leaves nothing predicts worse than one that lacks all it has, whatever that errs, once the errors of
 /// either are foretold.
 pub fn is_loss(ahead: &dyn Ahead, from: &Node, to: &Node) -> bool {

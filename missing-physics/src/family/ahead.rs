@@ -41,8 +41,9 @@ pub trait Ahead: Sync {
         None
     }
 
-    /// The errors of the half in which the system moves faster, for a term that acts wherever it moves: by them alone it gains
-    /// what a term must, or it holds at rest and is something else. Nothing for other terms.
+    /// The errors of the half in which the system moves faster, for a term that rings wherever it moves: by them alone it gains
+    /// what a term must, or it holds at rest and is something else; and by what the errors do not foretell themselves, or it is
+    /// a noise. Nothing for other terms.
     fn in_motion(&self, _term: usize) -> Option<&[bool]> {
         None
     }

@@ -40,8 +40,10 @@ pub enum Reason {
     ErrorNoLower,
     /// Beside errors that are not the sensors' the effect that goes gains here and loses there.
     NotRecurring,
-    /// The effect that goes acts wherever the system moves, but gains too little where that moves fast.
+    /// The effect that goes rings wherever the system moves, but gains too little where that moves fast.
     AtRest,
+    /// The effect that goes rings, but gains too little beside what the errors foretell themselves.
+    Colour,
     /// An autoregression of the errors foretells what the effect that goes gains.
     Foretold,
     /// Chance gains as much as the effect that goes.

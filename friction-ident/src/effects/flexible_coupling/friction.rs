@@ -120,7 +120,7 @@ impl Effect for WithFriction {
     }
 
     /// Both bodies answer the force and swing while the axis slides.
-    fn acts_in_motion(&self) -> bool {
+    fn rings(&self) -> bool {
         true
     }
 

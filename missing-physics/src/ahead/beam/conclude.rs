@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::{Climb, Costs, STEPS, Search, TRIED, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::fit::Fitter;
-use crate::ahead::foretold::is_foretold;
+use crate::ahead::foretold::{is_colour, is_foretold};
 use crate::ahead::found::Found;
 use crate::ahead::node::Node;
 use crate::ahead::refused::not_told;
@@ -81,7 +81,8 @@ impl Search<'_> {
                 idle.sort_by_key(|(k, _)| std::cmp::Reverse(self.parameters(&costs[*k].2)));
             }
             // What a single one gains has been asked, but not when it does so.
-            let since = [Reason::WithinSensors, Reason::NotRecurring, Reason::AtRest];
+            let since =
+                [Reason::WithinSensors, Reason::NotRecurring, Reason::AtRest, Reason::Colour];
             let asked = |(_, why): &(usize, Reason)| costs.len() > 1 || since.contains(why);
             let Some((goes, because)) = idle.pop().filter(asked) else {
                 return (best, costs);
@@ -144,6 +145,7 @@ impl Search<'_> {
         let misfit = self.ahead.has_shares() && self.budget(set) > self.thresholds.complete;
         let too_little =
             |there: &[bool]| self.comparison.gained(without, set, there) < self.thresholds.better;
+        let rings = self.ahead.in_motion(term);
         if cost.nats < self.thresholds.better {
             Some(Reason::AsGoodWithout)
         } else if cost.nats * self.of_the_sensors(without) < self.thresholds.better {
@@ -152,8 +154,10 @@ impl Search<'_> {
             Some(Reason::ErrorNoLower)
         } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
-        } else if self.ahead.in_motion(term).is_some_and(too_little) {
+        } else if rings.is_some_and(too_little) {
             Some(Reason::AtRest)
+        } else if rings.is_some() && is_colour(self.ahead, without, set, self.thresholds.better) {
+            Some(Reason::Colour)
         } else if is_foretold(self.ahead, without, set, cost.nats, self.thresholds.better) {
             Some(Reason::Foretold)
         } else {

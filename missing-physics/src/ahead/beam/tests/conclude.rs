@@ -183,6 +183,34 @@ fn what_acts_wherever_a_system_moves_is_named_by_what_it_gains_where_that_moves_
 }
 
 #[test]
+fn what_rings_is_named_by_what_it_gains_beside_what_the_errors_foretell() {
+    // Errors of the base that ring by themselves, or that are larger.
+    let rings = |errors: &[f64]| {
+        let ring = |past: &mut [f64; 2], error: &f64| {
+            *past = [error + 0.6 * past[0] - 0.7 * past[1], past[0]];
+            Some(past[0])
+        };
+        errors.iter().scan([0.0; 2], ring).collect::<Vec<f64>>()
+    };
+    let larger = |errors: &[f64]| errors.iter().map(|error| 1.3 * error).collect::<Vec<f64>>();
+    for (it_rings, foretold, kept) in
+        [(true, true, false), (true, false, true), (false, true, true), (false, false, true)]
+    {
+        let mut plant = Plant::new(3, &[]);
+        plant.in_motion = it_rings.then(|| vec![true; plant.instants().len()]);
+        let mut search = search(&plant, narrow());
+        let mut climb = climb(&plant, Vec::new());
+        let errors = &climb.base.errors;
+        let errors = if foretold { rings(errors) } else { larger(errors) };
+        climb.base = Node::new(&plant, Plant::model(&[]), 0, errors);
+        let (last, _) = search.prune(&climb, node(&plant, &[(WAVE, &[1e-5])]));
+        assert_eq!(last.effects(&plant), if kept { vec![WAVE] } else { vec![] });
+        let because = search.decisions.first().and_then(|d| d.because.clone());
+        assert_eq!(because, (!kept).then_some(Reason::Colour));
+    }
+}
+
+#[test]
 fn a_usual_effect_that_came_with_an_alternative_need_not_be_there() {
     let mut plant = Plant::new(9, &[(WAVE, &[0.05])]);
     let alternatives = |plant: &Plant| {
