@@ -159,6 +159,18 @@ mod tests {
     }
 
     #[test]
+    fn what_every_plant_has_does_not_count_in_a_pair() {
+        let mut plant = plant();
+        plant.usual = vec![BEAT];
+        let reading = Reading::of(&plant).unwrap();
+        let mut three = sought(&reading, &plant, 2, true);
+        three.found.added.push(BEAT);
+        assert!(three.is_pair());
+        three.found.added.push(WAVE);
+        assert!(!three.is_pair());
+    }
+
+    #[test]
     fn a_cut_look_is_told_and_what_was_compared_before_stands_first() {
         let plant = plant();
         let reading = Reading::of(&plant).unwrap();
