@@ -1,7 +1,7 @@
 //! The record of what was compared, in plain words.
 
 use missing_physics::measurement::quantity::percent;
-use missing_physics::report::{Decision, Outcome, Rung};
+use missing_physics::report::{Decision, Outcome, Remark, Rung};
 use missing_physics::{Discovery, Thresholds};
 
 use super::{nats, times};
@@ -127,6 +127,9 @@ pub fn why_nothing(discovery: &Discovery, rung: usize, thresholds: &Thresholds) 
     if discovery.ladder.get(rung + 1).is_some() || discovery.budget.is_none() {
         return None;
     }
+    if let Some(effect) = not_the_cause(discovery, rung) {
+        return Some(format!("{effect} was found, but is not the cause: the notes say why"));
+    }
     if let Some(decision) = taken_out(discovery, rung) {
         return Some(format!(
             "{} was taken out again: without it {} nats are lost, and an effect must be worth {}",
@@ -154,6 +157,15 @@ pub fn why_nothing(discovery: &Discovery, rung: usize, thresholds: &Thresholds) 
     });
     let gain = gain.unwrap_or_default();
     Some(format!("nothing promised enough to be fitted; the best, {}{gain}", best.effect))
+}
+
+/// The effect that was found after `rung` others, where all that was found was taken back.
+fn not_the_cause(discovery: &Discovery, rung: usize) -> Option<&str> {
+    let found = discovery.remarks.iter().find_map(|remark| match remark {
+        Remark::NotTheCause { effects, .. } => effects.get(rung),
+        _ => None,
+    });
+    found.filter(|_| discovery.added.is_empty()).map(String::as_str)
 }
 
 /// What is asked beside effects that explain much.
@@ -343,6 +355,25 @@ mod tests {
         );
         // The rung that was reached needs no excuse.
         assert_eq!(why_nothing(&discovery(&["stribeck"], &[]), 0, &Thresholds::default()), None);
+    }
+
+    #[test]
+    fn where_names_were_taken_back_each_of_their_steps_says_so() {
+        let refused = decision(1, "stribeck", "", 1024.0, "worse");
+        let mut found = discovery(&[], &[refused]);
+        let why = |found: &Discovery, rung| why_nothing(found, rung, &Thresholds::default());
+        let words = "nothing was to be added: stribeck gains +1024 nats, which is enough";
+        assert_eq!(why(&found, 0).unwrap(), words);
+        let effects = vec!["asymmetry".to_owned()];
+        let (lacking, because) = (None, None);
+        found.remarks =
+            vec![Remark::NotTheCause { effects, base: 1.75, last: 1.65, lacking, because }];
+        let words = "asymmetry was found, but is not the cause: the notes say why";
+        assert_eq!(why(&found, 0).unwrap(), words);
+        assert!(!why(&found, 1).unwrap().contains("asymmetry"));
+        // Of a look that was not told.
+        found.added = vec!["drift".to_owned()];
+        assert!(!why(&found, 0).unwrap_or_default().contains("asymmetry"));
     }
 
     #[test]
