@@ -179,7 +179,9 @@ impl Limits {
                 return (low, high, if typical == 0.0 { 0.1 * high } else { typical });
             }
         };
-        let upper = 2.0 * self.force.most / per.rms;
+        // From the middle of a stroke its ends are half of it away.
+        let reach = if parameter.quantity == Quantity::Stiffness { 0.5 } else { 1.0 };
+        let upper = 2.0 * self.force.most / (reach * per.rms);
         let lower = if parameter.low < 0.0 { -upper } else { 0.0 };
         (lower, upper, 0.1 * self.force.rms / per.rms)
     }
@@ -293,20 +295,30 @@ mod tests {
     use crate::family::testing::{family, model};
     use missing_physics::{Channel, ModelFamily, Recording};
 
+    /// Those of a sine of 0.05 m and 18 N in such counts.
+    fn of_sine(count: f64) -> Limits {
+        let time: Vec<f64> = (0..8000).map(|k| 2.5e-4 * f64::from(k)).collect();
+        let position = |t: &f64| (0.05 * (6.0 * t).sin() / count).round() * count;
+        let position: Vec<f64> = time.iter().map(position).collect();
+        let force = time.iter().map(|t| -18.0 * (6.0 * t).sin()).collect();
+        let channels =
+            vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
+        let recording = Recording::new("sine", time, channels).unwrap();
+        let prepared = Prepared::new(&recording, None).unwrap();
+        Limits::of(&prepared, (Axis::Linear, Effort::default()), (-0.05, 0.05))
+    }
+
+    #[test]
+    fn a_spring_may_make_twice_the_whole_force_at_either_end_of_the_stroke() {
+        let family = family();
+        let spring = family.terms.iter().position(|term| term.name == "spring").unwrap();
+        let spring = of_sine(1e-9).term(family.effect(spring).unwrap().about());
+        assert!((spring.parameters[0].upper / 720.0 - 1.0).abs() < 1e-3);
+    }
+
     #[test]
     fn how_large_a_mass_may_be_does_not_depend_on_the_counts() {
-        let most = |count: f64| {
-            let time: Vec<f64> = (0..8000).map(|k| 2.5e-4 * f64::from(k)).collect();
-            let position = |t: &f64| (0.05 * (6.0 * t).sin() / count).round() * count;
-            let position: Vec<f64> = time.iter().map(position).collect();
-            let force = time.iter().map(|t| -18.0 * (6.0 * t).sin()).collect();
-            let channels =
-                vec![Channel::new("force", "N", force), Channel::new("position", "m", position)];
-            let recording = Recording::new("sine", time, channels).unwrap();
-            let prepared = Prepared::new(&recording, None).unwrap();
-            let axis = (Axis::Linear, Effort::default());
-            Limits::of(&prepared, axis, (-0.05, 0.05)).mass().parameters[0].upper
-        };
+        let most = |count: f64| of_sine(count).mass().parameters[0].upper;
         for count in [1e-9, 1e-5, 2e-4] {
             assert!((most(count) / 200.0 - 1.0).abs() < 0.1, "{count}: {}", most(count));
         }

@@ -28,6 +28,8 @@ pub fn refused(
             let key = || term.key(parameter);
             let gone = |before: f64| node.model.values[k].abs() < GONE * before.abs();
             match base.model.values.get(k) {
+                // One that ended at the limit of its search says nothing of what there is.
+                Some(before) if *before >= parameter.upper => {}
                 Some(before) if term.always && parameter.lower >= 0.0 && gone(*before) => {
                     let last = *node.model.terms.last()?;
                     return Some((last, Refusal::NothingLeft { parameter: key() }));

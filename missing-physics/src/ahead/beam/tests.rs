@@ -270,9 +270,14 @@ fn an_amplitude_whose_search_ended_at_a_limit_is_known() {
     // What every model has is not given up for an effect, however much of it there was.
     let with =
         |terms: Vec<usize>, values: Vec<f64>| fit::evaluated(&plant, Fitted { terms, values }, 0);
-    for (before, drive, known) in
-        [(1.0, 0.5, false), (1.0, 0.005, false), (1.0, 0.0005, true), (8.0, 0.005, true)]
-    {
+    // One that ended at the limit of its search says nothing of what there was.
+    for (before, drive, known) in [
+        (1.0, 0.5, false),
+        (1.0, 0.005, false),
+        (1.0, 0.0005, true),
+        (8.0, 0.005, true),
+        (10.0, 0.005, false),
+    ] {
         let base = with(vec![DRIVE], vec![before]);
         let node = with(vec![DRIVE, WAVE], vec![drive, 0.05]);
         let why = refused(search.family, search.ahead, &base, &node).map(|(_, why)| why);
