@@ -26,10 +26,10 @@ pub fn refused(
                 continue;
             }
             let key = || term.key(parameter);
-            let gone = |before: f64| node.model.values[k].abs() < GONE * before.abs();
+            // What ended at the limit of its search says nothing of what there was.
+            let known = || !scales::of(family, &base.model)[k].is_at_far_limit();
+            let gone = |before: f64| node.model.values[k].abs() < GONE * before.abs() && known();
             match base.model.values.get(k) {
-                // One that ended at the limit of its search says nothing of what there is.
-                Some(before) if *before >= parameter.upper => {}
                 Some(before) if term.always && parameter.lower >= 0.0 && gone(*before) => {
                     let last = *node.model.terms.last()?;
                     return Some((last, Refusal::NothingLeft { parameter: key() }));

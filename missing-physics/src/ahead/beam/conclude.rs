@@ -145,7 +145,6 @@ impl Search<'_> {
         let misfit = self.ahead.has_shares() && self.budget(set) > self.thresholds.complete;
         let too_little =
             |there: &[bool]| self.comparison.gained(without, set, there) < self.thresholds.better;
-        let rings = self.ahead.in_motion(term);
         if cost.nats < self.thresholds.better {
             Some(Reason::AsGoodWithout)
         } else if cost.nats * self.of_the_sensors(without) < self.thresholds.better {
@@ -154,14 +153,15 @@ impl Search<'_> {
             Some(Reason::ErrorNoLower)
         } else if misfit && cost.recurs_by_chance() > self.thresholds.recurs() {
             Some(Reason::NotRecurring)
-        } else if rings.is_some_and(too_little) {
-            Some(Reason::AtRest)
-        } else if rings.is_some() && is_colour(self.ahead, without, set, self.thresholds.better) {
-            Some(Reason::Colour)
-        } else if is_foretold(self.ahead, without, set, cost.nats, self.thresholds.better) {
-            Some(Reason::Foretold)
         } else {
-            None
+            let (ahead, better) = (self.ahead, self.thresholds.better);
+            match ahead.in_motion(term) {
+                Some(there) if too_little(there) => Some(Reason::AtRest),
+                Some(_) => is_colour(ahead, without, set, better).then_some(Reason::Colour),
+                None => {
+                    is_foretold(ahead, without, set, cost.nats, better).then_some(Reason::Foretold)
+                }
+            }
         }
     }
 
