@@ -1,8 +1,11 @@
 //! The whole loop: a plant with a hidden effect, a file, a discovery, a model that another simulation follows.
 
+use std::f64::consts::{FRAC_PI_2, TAU};
+
 use aep_data::{Mapping, load, to_csv};
+use friction_ident::closed_loop::{Controller, Pd, Sample, Setup, closed_loop};
 use friction_ident::family::{FrictionFamily, Options};
-use friction_ident::{Axis, Model};
+use friction_ident::{Axis, Model, Reference};
 use missing_physics::report::Verdict;
 use missing_physics::{Channel, Discovery, Fitted, Recording, confirm, discover};
 
@@ -98,6 +101,58 @@ fn two_strong_effects_that_hide_each_other_are_both_named() {
     let mut named: Vec<String> = found.added.iter().map(main).collect();
     named.sort();
     assert_eq!(named, ["position-friction", "ripple"], "{:?}", found.remains);
+}
+
+/// A controller that knows the spring.
+struct Stiff {
+    pd: Pd,
+    stiffness: f64,
+}
+
+impl Controller for Stiff {
+    fn command(&mut self, sample: &Sample) -> f64 {
+        self.stiffness * sample.reference + self.pd.command(sample)
+    }
+}
+
+/// A flexure of 50 kg: its spring makes 900 N of force, all else 9 N.
+fn on_a_flexure() -> Recording {
+    let stiffness = 3e5;
+    let plant = Model::new(Axis::Linear, 50.0)
+        .and_then(|model| model.with("coulomb", &[("F_C", 15.0)]))
+        .and_then(|model| model.with("viscous", &[("F_v", 100.0)]))
+        .and_then(|model| model.with("spring", &[("k", stiffness), ("x_0", 0.0)]))
+        .unwrap();
+    let (sample_time, samples) = (1e-3, 20_000);
+    let sines = [(4e-3, 0.4), (1.5e-3, 1.1), (0.5e-3, 3.1)];
+    // A sine, or a derivative of it.
+    let sum = |derivative: i32| -> Vec<f64> {
+        let at = |k: usize| {
+            let time = sample_time * k as f64;
+            let sine = |(size, hertz): (f64, f64)| {
+                let omega = TAU * hertz;
+                size * omega.powi(derivative)
+                    * (omega * time + FRAC_PI_2 * f64::from(derivative)).sin()
+            };
+            sines.map(sine).iter().sum()
+        };
+        (0..samples).map(at).collect()
+    };
+    let reference =
+        Reference { sample_time, position: sum(0), velocity: sum(1), acceleration: sum(2) };
+    let mut controller = Stiff { pd: Pd::new(2e5, 3e3), stiffness };
+    let setup = Setup { encoder_resolution: 1e-7, force_noise: 0.05, seed: 5, ..Setup::default() };
+    closed_loop(&plant, &reference, &mut controller, &setup).unwrap().recording
+}
+
+/// The base model, which has no spring, finds its mass at the limit of its search.
+#[test]
+fn a_spring_that_makes_nearly_all_of_the_force_is_named() {
+    let family = FrictionFamily::new(&on_a_flexure(), &Options::default()).unwrap();
+    let found = discover(&family, &among(&family, &AMONG), &mut ()).unwrap();
+    assert!(found.added[0].starts_with("spring"), "{:?} {:?}", found.added, found.remains);
+    let budget = found.budget.unwrap();
+    assert!(budget.base > 1.5 && budget.last < 1.0, "{budget:?}");
 }
 
 #[test]

@@ -15,8 +15,14 @@ pub fn remains(what: &Remains) -> String {
             } else {
                 format!("does what {} would do ({nats:+.0} nats)", instead_of.join(" + "))
             };
-            let course = self::course(course);
-            format!("{} {does}: {course}. Why, this recording does not show.", capital(rival))
+            let rival = capital(rival);
+            match course {
+                Some(course) => format!(
+                    "{rival} {does}: {}. Why, this recording does not show.",
+                    self::course(course)
+                ),
+                None => format!("{rival} {does}. How large it is, and why, this recording does not show."),
+            }
         }
         Remains::Outdone { by, refusal, instead_of, nats } => {
             let does = if instead_of.is_empty() {
@@ -202,18 +208,23 @@ mod tests {
         let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
         let step = Course::Step { change: -1.7, at: 11.5, unit, along_unit };
         assert_eq!(
-            rival(&["drift", "stribeck"], step),
+            rival(&["drift", "stribeck"], Some(step)),
             "A friction level that varies freely with time does what drift + stribeck would do (+120 nats): it changes by \
              -1.70 N at 11.5 s. Why, this recording does not show."
         );
         let (unit, along_unit) = ("N".to_owned(), "s".to_owned());
         let wave = Course::Wave { amplitude: 10.3, period: 0.435, unit, along_unit };
-        assert!(rival(&[], wave).contains("it swings by 10.3 N to either side every 0.435 s."));
+        assert!(
+            rival(&[], Some(wave)).contains("it swings by 10.3 N to either side every 0.435 s.")
+        );
         let (unit, along_unit) = ("N".to_owned(), "m".to_owned());
         let varies = Course::Varies { range: 1.7, from: 0.1, to: 0.11, unit, along_unit };
-        assert!(rival(&[], varies).contains(
+        assert!(rival(&[], Some(varies)).contains(
             "time lowers the prediction error by 120 nats: it varies over a range of 1.70 N, most of all between 100 mm and \
              110 mm."
+        ));
+        assert!(rival(&[], None).ends_with(
+            "time lowers the prediction error by 120 nats. How large it is, and why, this recording does not show."
         ));
     }
 

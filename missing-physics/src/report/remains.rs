@@ -65,8 +65,9 @@ pub enum Remains {
         instead_of: Vec<String>,
         /// What it gains over the last model, nats.
         nats: f64,
-        /// What it was found to be.
-        course: Course,
+        /// What it was found to be; nothing where what every model has (an inertia), which it is measured in, ended at the
+        /// limit of its search.
+        course: Option<Course>,
     },
     /// A model that is not what it is called predicts better than effects that would be named.
     Outdone {

@@ -1,9 +1,11 @@
 //! A force that repeats itself over time, whatever the axis does: another machine, a pump, a hum of the supply.
 
+use std::f64::consts::{PI, TAU};
+
 use super::{BEGIN, END};
 use crate::axis::Quantity;
 use crate::effects::{
-    About, Effect, Motion, Parameter, Parameters, Periodic, Repeats, Slot, Smooth,
+    About, AsFound, Effect, Motion, Parameter, Parameters, Periodic, Refused, Repeats, Slot, Smooth,
 };
 use crate::simd::{sin_cos_of_turns, vectorised};
 
@@ -35,6 +37,21 @@ impl Effect for ForceWave {
     fn periodic(&self) -> Option<Periodic> {
         let of = Repeats::ForceOverTime;
         Some(Periodic { period: "P", of, ranked: true, columns: None, shortest: None })
+    }
+
+    /// At an even speed the error of rounding is a saw-tooth whose first harmonic is a count over pi, and counts beat with the
+    /// samples: what is taken for a force that swings a free mass no further may be that.
+    fn refused(&self, found: &AsFound<'_>) -> Option<Refused> {
+        let [a, b, period] = *found.values else { return None };
+        let (value, limit) = (a.hypot(b), found.mass * (TAU / period).powi(2) * found.count / PI);
+        let meaning = "it moves the axis no further than rounding to counts does at an even speed";
+        (value <= limit).then_some(Refused {
+            name: "amplitude",
+            value,
+            limit,
+            unit_of: "a",
+            meaning,
+        })
     }
 
     fn smooth_force(&self, p: Parameters<'_>, m: &Motion<'_>, out: &mut Smooth<'_>) {
@@ -69,5 +86,28 @@ mod tests {
         assert!((force(20.0, 0.0) + 0.5).abs() < 1e-9);
         assert!((force(20.1, 0.0) - 2.0).abs() < 1e-9);
         assert!((force(13.37, 0.0) - force(13.77, 0.3)).abs() < 1e-9);
+    }
+
+    /// A position in counts of 1 at an even speed of 0.243 counts a sample, and the force that would swing 28 kg so.
+    #[test]
+    fn what_swings_the_axis_as_counts_that_beat_with_the_samples_do_is_none() {
+        let (mass, speed, samples) = (28.0, 0.243, 10_000);
+        let mut sums = (0.0, 0.0);
+        for k in 0..samples {
+            let place = speed * f64::from(k);
+            let (sin, cos) = (TAU * place).sin_cos();
+            sums.0 += (place.round() - place) * sin;
+            sums.1 += (place.round() - place) * cos;
+        }
+        let swings = 2.0 / f64::from(samples) * f64::hypot(sums.0, sums.1);
+        let refused = |times: f64| {
+            let force = times * swings * mass * (TAU * speed).powi(2);
+            let values = [0.0, force, 1.0 / speed];
+            let (least, most, mass) = (&[0.0; 3][..], &[0.0; 3][..], mass);
+            let found =
+                AsFound { values: &values, least, most, mass, force: 1.0, count: 1.0, give: 0.0 };
+            ForceWave.refused(&found).is_some()
+        };
+        assert!(refused(0.99) && !refused(1.05), "{swings}");
     }
 }

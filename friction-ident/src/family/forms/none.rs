@@ -115,6 +115,8 @@ impl FrictionFamily {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{PI, TAU};
+
     use crate::family::testing::{family, model};
     use missing_physics::TermParameter;
 
@@ -217,6 +219,20 @@ mod tests {
         let offset = family.terms.iter().position(|term| term.name == "offset").unwrap();
         let base = Fitted { terms: vec![0], values: vec![20.0] }.with(offset, &[0.0]);
         assert_eq!(family.vanishes(&base, &base), None);
+    }
+
+    #[test]
+    fn a_wave_of_the_force_that_moves_the_axis_by_a_part_of_a_count_is_none() {
+        let family = family();
+        let (period, swings) = (4e-3, family.count() / PI);
+        let least = 20.0 * (TAU / period).powi(2) * swings;
+        let refused = |a: f64| said(&family, "force-wave", &[("a", a), ("P", period)]);
+        assert_eq!(refused(1.01 * least), None);
+        let Some(Refusal::NotThatEffect { value, limit, .. }) = refused(-0.99 * least) else {
+            panic!("a beat of counts is a wave of the force")
+        };
+        assert_eq!(value.unit, "N");
+        assert!((limit / least - 1.0).abs() < 1e-9, "{limit} {least}");
     }
 
     #[test]

@@ -9,9 +9,10 @@ use rayon::prelude::*;
 use super::{Climb, Costs, STEPS, Search, negative};
 use crate::ahead::compare::Difference;
 use crate::ahead::node::Node;
+use crate::ahead::scales;
 use crate::ahead::screen::screen;
 use crate::family::{Fitted, Rival};
-use crate::report::{Outcome, Reason, Remains};
+use crate::report::{Course, Outcome, Reason, Remains};
 
 /// Share of what is needed that the first order promises at least: from a poor model it sees little of the gain.
 pub(super) const PROMISED: f64 = 0.5;
@@ -97,6 +98,16 @@ impl Search<'_> {
         let base = &climb.base;
         let added = Self::added(base, last);
         let kin: Vec<usize> = added.iter().copied().filter(|t| self.is_kin(*t, rival)).collect();
+        // Beside a base that leaves no more than the sensors make, what is none as it was fitted is nothing that is missing.
+        if added.is_empty()
+            && self.is_complete(base)
+            && let Some((_, refusal)) = self.ahead.vanishes(&free.model, &base.model)
+        {
+            let gains = self.comparison.compare(base, &free);
+            let because = Some(Reason::Refused { refusal });
+            self.note(0, &free, base, gains, Outcome::NotIdentifiable, because);
+            return None;
+        }
         let alone = self.does_as_much(base, last, &free, added.len(), rival);
         // Of more effects, and beside some that leave something, some may be needed beside it; beside what leaves nothing
         // no other than shapes of it are asked to give way.
@@ -147,7 +158,7 @@ impl Search<'_> {
             (false, false) => self.only(base, last, &kept),
         };
         let nats = self.in_full(self.comparison.compare(last, &beside).nats);
-        let course = self.family.course(rival.term, &self.values(&beside, rival));
+        let course = self.course(&beside, rival);
         let instead_of = self.named(&gone);
         let rival = rival.title.to_owned();
         let found = Some(Remains::Rival { rival, instead_of, nats, course });
@@ -257,6 +268,14 @@ impl Search<'_> {
     fn keeping(&self, last: &Node, added: &[usize], kept: &[usize]) -> Fitted {
         let gone = added.iter().filter(|term| !kept.contains(term));
         gone.fold(last.model.clone(), |model, term| model.without(self.family, *term))
+    }
+
+    /// What the rival was found to be; nothing where what every model has ended at the limit of its search, which what is
+    /// found beside it is measured in.
+    pub(super) fn course(&self, with: &Node, rival: &Rival) -> Option<Course> {
+        let moved = scales::of(self.family, &with.model);
+        let unit = moved.iter().all(|moved| !moved.is_known() || !moved.is_at_far_limit());
+        unit.then(|| self.family.course(rival.term, &self.values(with, rival)))
     }
 
     fn values(&self, free: &Node, rival: &Rival) -> Vec<f64> {

@@ -62,6 +62,32 @@ fn other_shapes_of_a_rival_that_predict_as_well_take_the_place_of_worse_ones() {
 }
 
 #[test]
+fn how_a_rival_runs_is_told_where_what_it_is_measured_in_is_known() {
+    let plant = Plant::new(12, &[(WAVE, &[0.05])]);
+    let rival = Rival { term: RIVAL, title: "a wave less a beat", kin: Vec::new() };
+    let search = search(&plant, narrow());
+    let mut with = node(&plant, &[(RIVAL, &[0.05])]);
+    assert!(matches!(search.course(&with, &rival), Some(Course::Values { .. })));
+    with.model.values[DRIVE] = plant.terms()[DRIVE].parameters[0].upper;
+    assert_eq!(search.course(&with, &rival), None);
+}
+
+#[test]
+fn what_is_no_such_rival_as_it_was_fitted_says_nothing_against_a_complete_base() {
+    for (size, incomplete) in [(0.002, false), (0.05, true)] {
+        let mut plant = Plant::new(12, &[(RIVAL, &[size])]);
+        for (none, told) in [(None, true), (Some(RIVAL), incomplete)] {
+            plant.none = none;
+            let base = node(&plant, &[]);
+            let mut search = search(&plant, narrow());
+            assert_eq!(search.is_complete(&base), !incomplete, "{size}: {}", search.budget(&base));
+            let found = search.instead(&climb(&plant, Vec::new()), &base);
+            assert_eq!(found.is_some(), told, "{size} {none:?}");
+        }
+    }
+}
+
+#[test]
 fn a_rival_must_predict_better_than_one_effect_and_as_well_as_several() {
     // As well, to a few nats.
     let one = Plant::new(12, &[(WAVE, &[0.05])]);
