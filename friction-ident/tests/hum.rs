@@ -49,7 +49,7 @@ fn a_hum_of_the_supply_is_told_with_its_size_and_its_period() {
     let found = discover(&family, &Settings { base, ..Settings::default() }, &mut ()).unwrap();
     assert!(found.added.is_empty(), "{:?}", found.added);
     let wave = found.remains.iter().find_map(|remains| match remains {
-        Remains::Rival { course: Course::Wave { amplitude, period, .. }, .. } => {
+        Remains::Rival { course: Some(Course::Wave { amplitude, period, .. }), .. } => {
             Some((amplitude, period))
         }
         _ => None,
