@@ -172,11 +172,9 @@ impl<'a> Begun<'a> {
         let preferred = |there: (&Node, usize), here: (&Node, usize)| {
             which_reading::nats(reading.searched(), there, here, better)
         };
-        let turned = match (here.is_of_reading(), there.is_of_reading()) {
-            (false, true) => false,
-            (true, false) => true,
-            _ => preferred(there.climb.top(), here.climb.top()) > nats,
-        };
+        let by = preferred(there.climb.top(), here.climb.top()) - nats;
+        let of_reading = (there.is_of_reading(), here.is_of_reading());
+        let turned = which_reading::stands(by, of_reading, better);
         let (mut first, second) = if turned { (there, here) } else { (here, there) };
         let other = second.reading;
         let fitter = Fitter::new(other.family, other.searched()).stopped_by(stop);

@@ -29,6 +29,14 @@ pub fn nats(ahead: &dyn Ahead, here: (&Node, usize), there: (&Node, usize), bett
     }
 }
 
+/// Whether the reading stands whose best model is to be preferred `by` so many nats. One that takes an effect which may be no
+/// more than how late the input is read (`of_reading`: here, there) must do better by what an effect must gain: either is
+/// wrong where the input changes between samples, and a lag is the rest of the way from the one to the other.
+pub fn stands(by: f64, of_reading: (bool, bool), better: f64) -> bool {
+    let needed = |is: bool| if is { better } else { 0.0 };
+    by + needed(of_reading.1) > needed(of_reading.0)
+}
+
 /// A model without one of the effects that were `added` to it, where the other reading, whose `fitter` this is, does as
 /// well without.
 pub fn with_less(top: &Node, added: &[usize], fitter: &Fitter<'_>, better: f64) -> Option<Node> {
@@ -74,6 +82,19 @@ mod tests {
         assert_eq!(nats(&plant, (&good, 0), (&poor, 1), 20.0), alike + 20.0);
         assert_eq!(nats(&plant, (&good, 2), (&poor, 1), 20.0), alike - 20.0);
         assert_eq!(nats(&plant, (&good, 1), (&good, 2), 20.0), 20.0);
+    }
+
+    #[test]
+    fn a_reading_that_takes_a_lag_of_its_own_must_do_clearly_better() {
+        for (of_reading, least) in [
+            ((false, false), 0.0),
+            ((true, true), 0.0),
+            ((true, false), 80.0),
+            ((false, true), -80.0),
+        ] {
+            assert!(stands(least + 1.0, of_reading, 80.0), "{of_reading:?}");
+            assert!(!stands(least - 1.0, of_reading, 80.0), "{of_reading:?}");
+        }
     }
 
     #[test]
