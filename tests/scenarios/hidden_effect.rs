@@ -1,11 +1,11 @@
 //! The whole loop: a plant with a hidden effect, a file, a discovery, a model that another simulation follows.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 use aep_data::{Mapping, load, to_csv};
 use friction_ident::closed_loop::{Controller, Pd, Sample, Setup, closed_loop};
 use friction_ident::family::{FrictionFamily, Options};
-use friction_ident::{Axis, Model, Reference};
+use friction_ident::{Axis, Model, control};
 use missing_physics::report::Verdict;
 use missing_physics::{Channel, Discovery, Fitted, Recording, confirm, discover};
 
@@ -115,7 +115,7 @@ impl Controller for Stiff {
     }
 }
 
-/// A flexure of 50 kg: its spring makes 900 N of force, all else 9 N.
+/// A flexure of 50 kg: its spring makes 912 N of force (rms), friction and inertia 17 N.
 fn on_a_flexure() -> Recording {
     let stiffness = 3e5;
     let plant = Model::new(Axis::Linear, 50.0)
@@ -123,23 +123,11 @@ fn on_a_flexure() -> Recording {
         .and_then(|model| model.with("viscous", &[("F_v", 100.0)]))
         .and_then(|model| model.with("spring", &[("k", stiffness), ("x_0", 0.0)]))
         .unwrap();
-    let (sample_time, samples) = (1e-3, 20_000);
     let sines = [(4e-3, 0.4), (1.5e-3, 1.1), (0.5e-3, 3.1)];
-    // A sine, or a derivative of it.
-    let sum = |derivative: i32| -> Vec<f64> {
-        let at = |k: usize| {
-            let time = sample_time * k as f64;
-            let sine = |(size, hertz): (f64, f64)| {
-                let omega = TAU * hertz;
-                size * omega.powi(derivative)
-                    * (omega * time + FRAC_PI_2 * f64::from(derivative)).sin()
-            };
-            sines.map(sine).iter().sum()
-        };
-        (0..samples).map(at).collect()
-    };
-    let reference =
-        Reference { sample_time, position: sum(0), velocity: sum(1), acceleration: sum(2) };
+    let position =
+        |time: f64| sines.map(|(size, hertz)| size * (TAU * hertz * time).sin()).iter().sum();
+    let positions = (0..20_000).map(|k| position(1e-3 * f64::from(k))).collect();
+    let reference = control::from_positions(1e-3, positions);
     let mut controller = Stiff { pd: Pd::new(2e5, 3e3), stiffness };
     let setup = Setup { encoder_resolution: 1e-7, force_noise: 0.05, seed: 5, ..Setup::default() };
     closed_loop(&plant, &reference, &mut controller, &setup).unwrap().recording

@@ -29,8 +29,8 @@ pub fn nats(ahead: &dyn Ahead, here: (&Node, usize), there: (&Node, usize), bett
     }
 }
 
-/// Whether the reading stands whose best model is to be preferred `by` so many nats. One that takes an effect which may be no
-/// more than how late the input is read (`of_reading`: here, there) must do better by what an effect must gain: either is
+/// Whether the reading stands whose best model is to be preferred to that of the other one `by` so many nats. One that takes an
+/// effect which may be no more than how late the input is read (`of_reading`: this one, the other) must do better by what an effect must gain: either is
 /// wrong where the input changes between samples, and a lag is the rest of the way from the one to the other.
 pub fn stands(by: f64, of_reading: (bool, bool), better: f64) -> bool {
     let needed = |is: bool| if is { better } else { 0.0 };
